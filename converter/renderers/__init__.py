@@ -1,0 +1,1 @@
+"""Both renderers behind one interface."""

@@ -1,0 +1,60 @@
+"""The interface between a renderer and everything that uses one."""
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass, field
+from typing import TYPE_CHECKING, Any, Protocol
+
+from converter.scene.model import Scene
+from converter.scene.settings import Settings
+
+if TYPE_CHECKING:
+    from collections.abc import Buffer  # type: ignore[attr-defined]  # Python 3.12; a memoryview or a NumPy array here
+
+Progress = Callable[[float], None]
+"""Called now and then, from the calling thread, with the finished share of the picture (0..1)."""
+
+
+@dataclass(frozen=True, slots=True)
+class Rendering:
+    """A finished picture.
+
+    Attributes:
+        pixels: (height, width, 3) float32 buffer, linear RGB, row 0 on top, not clamped; `numpy.asarray` makes it an
+        array. seconds: wall-clock seconds by stage, e.g. {"build": 0.01, "render": 0.04}, in the order they ran.
+        statistics: the renderer's own counters, e.g. {"rays": 1862000, "threads": 2}.
+
+    """
+
+    pixels: "Buffer"
+    width: int
+    height: int
+    seconds: Mapping[str, float]
+    statistics: Mapping[str, Any] = field(default_factory=dict)
+
+
+class Interrupted(KeyboardInterrupt):
+    """The user stopped a rendering; `partial` holds it, black where it was not finished."""
+
+    def __init__(self, partial: Rendering) -> None:
+        super().__init__("interrupted")
+        self.partial = partial
+
+
+class RendererUnavailable(Exception):  # noqa: N818 - what it says
+    """A renderer cannot run on this machine; the message says what is missing and what to install."""
+
+
+class Renderer(Protocol):
+    """Draws scenes."""
+
+    name: str
+
+    def render(self, scene: Scene, settings: Settings, progress: Progress | None = None) -> Rendering:
+        """Draw `scene`.
+
+        Raises:
+            RendererUnavailable: it cannot run here.
+            Interrupted: Ctrl-C while it was drawing.
+
+        """
+        ...

@@ -1,0 +1,92 @@
+"""Mitsuba 3 with our plugins, seen as one of the renderers."""
+
+import os
+import time
+from dataclasses import dataclass
+from typing import Any
+
+from converter.renderers.base import Interrupted, Progress, RendererUnavailable, Rendering
+from converter.scene.model import Scene
+from converter.scene.settings import Settings
+from converter.to_mitsuba.integrator import Intersections
+
+
+@dataclass(frozen=True)
+class MitsubaRenderer:
+    """Draws through a scene description, a Mitsuba scene in memory, and the `whitted` integrator.
+
+    Attributes:
+        variant: "llvm_ad_rgb", "cuda_ad_rgb", or "auto": CUDA where a device answers, else LLVM.
+        intersections: how the integrator finds what a ray hits, see its documentation.
+
+    """
+
+    variant: str = "auto"
+    intersections: Intersections = "auto"
+
+    @property
+    def name(self) -> str:
+        """E.g. "mitsuba-auto"."""
+        return f"mitsuba-{self.variant}"
+
+    def render(self, scene: Scene, settings: Settings, progress: Progress | None = None) -> Rendering:
+        """Draw `scene`.
+
+        Raises:
+            RendererUnavailable: no variant runs here.
+            ValueError: a texture cannot be read, or a polyhedron cannot be made into a mesh.
+            Interrupted: Ctrl-C while it was drawing.
+
+        """
+        import numpy as np
+
+        started = time.perf_counter()
+        variant = self._start(settings)
+        ready = time.perf_counter()
+        mitsuba_scene = self._load(scene, settings)
+        built = time.perf_counter()
+
+        pixels = np.zeros((settings.height, settings.width, 3), dtype=np.float32)
+        integrator = mitsuba_scene.integrator()
+
+        def rendering() -> Rendering:
+            seconds = {"start": ready - started, "build": built - ready, "render": time.perf_counter() - built}
+            statistics = {"variant": variant, "intersections": integrator.intersections}
+            return Rendering(pixels, settings.width, settings.height, seconds, statistics)
+
+        try:
+            for first, color in integrator.bands(mitsuba_scene, mitsuba_scene.sensors()[0]):
+                rows = np.moveaxis(np.asarray(color), 0, -1).reshape(-1, settings.width, 3)
+                pixels[first : first + len(rows)] = rows
+                if progress is not None:
+                    progress((first + len(rows)) / settings.height)
+        except KeyboardInterrupt:
+            raise Interrupted(rendering()) from None
+        return rendering()
+
+    def trace_pixel(self, scene: Scene, settings: Settings, x: int, y: int) -> dict[str, Any]:
+        """Trace one pixel; the result is what `NativeRenderer.trace_pixel` documents."""
+        self._start(settings)
+        from converter.renderers.mitsuba_pixel import trace_pixel
+
+        return trace_pixel(self._load(scene, settings), settings, x, y)
+
+    def _start(self, settings: Settings) -> str:
+        """Load Mitsuba, and return the variant."""
+        from mitsuba_plugins import BackendError, set_variant
+
+        try:
+            variant = set_variant(self.variant)
+        except (BackendError, ImportError) as error:
+            raise RendererUnavailable(str(error)) from error
+        import drjit as dr
+
+        # 0 is all cores; a number that Dr.Jit was given before stays in force until another is given.
+        dr.set_thread_count(settings.threads or len(os.sched_getaffinity(0)))
+        return variant
+
+    def _load(self, scene: Scene, settings: Settings) -> Any:
+        from converter.to_mitsuba.load import load_description
+        from converter.to_mitsuba.scene import scene_description
+
+        return load_description(scene_description(scene, settings, self.intersections))

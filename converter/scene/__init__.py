@@ -1,0 +1,1 @@
+"""The course's scene format: its data model, parser, writer, and what a scene needs of a renderer."""

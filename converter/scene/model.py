@@ -1,0 +1,115 @@
+"""A course scene as plain, immutable data: what the file says, in the file's order, nothing derived from it.
+
+Indices (`Object.pigment`, `Object.finish`) count from 0, as in the file. Lengths are in scene units, angles in
+degrees, colours linear RGB that is meant to lie in 0..1 but is never clamped here.
+"""
+
+from dataclasses import dataclass, field
+from pathlib import Path
+
+Vector = tuple[float, float, float]
+Color = tuple[float, float, float]
+Plane = tuple[float, float, float, float]
+"""Coefficients of the half-space a x + b y + c z + d <= 0: the normal (a, b, c), of any length, points out."""
+
+
+@dataclass(frozen=True, slots=True)
+class Camera:
+    """A pinhole camera: `up` is a vector, `fovy` the full vertical angle in degrees."""
+
+    eye: Vector
+    look_at: Vector
+    up: Vector
+    fovy: float
+
+
+@dataclass(frozen=True, slots=True)
+class Light:
+    """A point light of the given colour, dimmed by 1 / (a + b d + c d^2) at distance d, (a, b, c) its attenuation."""
+
+    position: Vector
+    color: Color
+    attenuation: Vector
+
+
+@dataclass(frozen=True, slots=True)
+class Solid:
+    """One colour everywhere."""
+
+    color: Color
+
+
+@dataclass(frozen=True, slots=True)
+class Checker:
+    """A solid checkerboard of cubes with the given edge length; the cube at the origin's positive corner is `first`."""
+
+    first: Color
+    second: Color
+    size: float
+
+
+@dataclass(frozen=True, slots=True)
+class Texmap:
+    """An image projected through space: a point's column is `p0 . (x, y, z, 1)`, its row `p1 . (x, y, z, 1)`."""
+
+    file: Path  # as it can be opened: already relative to the scene's folder
+    p0: tuple[float, float, float, float]
+    p1: tuple[float, float, float, float]
+
+
+Pigment = Solid | Checker | Texmap
+
+
+@dataclass(frozen=True, slots=True)
+class Finish:
+    """How a surface answers light; `ior` as written, see `needs.eta`."""
+
+    ka: float
+    kd: float
+    ks: float
+    alpha: float
+    kr: float
+    kt: float
+    ior: float
+
+
+@dataclass(frozen=True, slots=True)
+class Sphere:
+    """A ball."""
+
+    center: Vector
+    radius: float
+
+
+@dataclass(frozen=True, slots=True)
+class Polyhedron:
+    """The intersection of half-spaces, convex, bounded or not."""
+
+    planes: tuple[Plane, ...]
+
+
+Shape = Sphere | Polyhedron
+
+
+@dataclass(frozen=True, slots=True)
+class Object:
+    """A shape with its pigment and finish, and the line of the file it starts on (0: made by a program)."""
+
+    pigment: int
+    finish: int
+    shape: Shape
+    line: int = field(default=0, compare=False)
+
+
+@dataclass(frozen=True, slots=True)
+class Scene:
+    """A whole scene. `ambient` is the file's first light, whose position and attenuation mean nothing."""
+
+    camera: Camera
+    ambient: Color
+    lights: tuple[Light, ...]
+    pigments: tuple[Pigment, ...]
+    finishes: tuple[Finish, ...]
+    objects: tuple[Object, ...]
+    file: Path | None = field(default=None, compare=False)
+    finish_lines: tuple[int, ...] = field(default=(), compare=False)

@@ -1,0 +1,107 @@
+"""What a scene needs of a renderer, worked out once, so that neither renderer models more than that."""
+
+import math
+from dataclasses import dataclass
+
+from converter.scene.model import Color, Finish, Polyhedron, Scene
+from converter.scene.settings import IorReading, Settings
+
+MAX_DEPTH = 64
+"""Deepest default for scenes in which every ray has at most one successor."""
+MAX_DEPTH_BRANCHING = 16
+"""Deepest default where a finish both reflects and transmits, so that a ray may have two successors."""
+
+
+@dataclass(frozen=True, slots=True)
+class SceneNeeds:
+    """What of a scene can be seen at all, and with which mechanisms.
+
+    Attributes:
+        pigments, finishes: indices that some object refers to, ascending.
+        etas: n1/n2 of every finish of the scene (outside over inside), however its `ior` was written.
+        reflects, refracts: a ray may be followed by a reflected, a transmitted one.
+        branches: a ray may be followed by both at once.
+        lit: a surface has kd or ks > 0 and there is a light: shadow rays are needed.
+        glossy: a lit surface has ks > 0: highlights are needed.
+        max_depth: bounces to follow after the primary ray.
+        background: linear RGB of rays that hit nothing.
+        planes: for each object the indices of the planes that have a face, ascending; for a sphere none.
+
+    """
+
+    pigments: tuple[int, ...]
+    finishes: tuple[int, ...]
+    etas: tuple[float, ...]
+    reflects: bool
+    refracts: bool
+    branches: bool
+    lit: bool
+    glossy: bool
+    max_depth: int
+    background: Color
+    planes: tuple[tuple[int, ...], ...]
+
+    @property
+    def bounces(self) -> bool:
+        """Whether anything is traced beyond the first hit."""
+        return self.max_depth > 0
+
+
+def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
+    """Work out what `scene`, drawn with `settings`, needs."""
+    finishes = tuple(sorted({o.finish for o in scene.objects}))
+    used = [scene.finishes[i] for i in finishes]
+    # A ray of the first bounce weighs kr or kt: below the cut-off it is never traced, so nothing needs it.
+    reflects = any(f.kr > 0 and f.kr >= settings.cutoff for f in used)
+    refracts = any(f.kt > 0 and f.kt >= settings.cutoff for f in used)
+    branches = any(min(f.kr, f.kt) > 0 and min(f.kr, f.kt) >= settings.cutoff for f in used)
+    max_depth = settings.max_depth if settings.max_depth is not None else default_depth(used, settings.cutoff)
+    if not (reflects or refracts):
+        max_depth = 0
+    bounces = max_depth > 0
+    return SceneNeeds(
+        pigments=tuple(sorted({o.pigment for o in scene.objects})),
+        finishes=finishes,
+        etas=tuple(eta(f, settings.ior) for f in scene.finishes),
+        reflects=reflects and bounces,
+        refracts=refracts and bounces,
+        branches=branches and bounces,
+        lit=bool(scene.lights) and any(f.kd > 0 or f.ks > 0 for f in used),
+        glossy=bool(scene.lights) and any(f.ks > 0 for f in used),
+        max_depth=max_depth,
+        background=scene.ambient if settings.background is None else settings.background,
+        planes=_planes_with_a_face(scene),
+    )
+
+
+def _planes_with_a_face(scene: Scene) -> tuple[tuple[int, ...], ...]:
+    polyhedra = [o.shape.planes for o in scene.objects if isinstance(o.shape, Polyhedron)]
+    if not polyhedra:
+        return ((),) * len(scene.objects)
+    from native_tracer.halfspaces import polyhedron_facts
+
+    facts = iter(polyhedron_facts(polyhedra))
+    return tuple(next(facts).kept if isinstance(o.shape, Polyhedron) else () for o in scene.objects)
+
+
+def default_depth(finishes: list[Finish], cutoff: float) -> int:
+    """Smallest number of bounces after which every weight is below `cutoff`, within the limits above."""
+    largest = max((max(f.kr, f.kt) for f in finishes), default=0.0)
+    if largest == 0:
+        return 0
+    limit = MAX_DEPTH_BRANCHING if any(f.kr > 0 and f.kt > 0 for f in finishes) else MAX_DEPTH
+    if largest >= 1 or cutoff == 0:
+        return limit
+    return min(limit, math.ceil(math.log(cutoff) / math.log(largest)))
+
+
+def eta(finish: Finish, reading: IorReading) -> float:
+    """n1/n2, outside over inside, of a finish; 1 where nothing is transmitted, since `ior` may then be anything."""
+    if finish.kt == 0:
+        return 1.0
+    return 1 / finish.ior if is_index(finish, reading) else finish.ior
+
+
+def is_index(finish: Finish, reading: IorReading) -> bool:
+    """Whether a finish's `ior` is read as n2/n1, the material's own index: outside a vacuum n1/n2 is at most 1."""
+    return reading == "index" or (reading == "auto" and finish.ior > 1)

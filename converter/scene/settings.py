@@ -1,0 +1,41 @@
+"""How to draw a scene: everything that the command line may change and the scene file does not say."""
+
+from dataclasses import dataclass
+from typing import Literal
+
+from converter.scene.model import Color
+
+PixelSample = Literal["corner", "center"]
+Specular = Literal["phong", "blinn"]
+IorReading = Literal["auto", "ratio", "index"]
+
+
+@dataclass(frozen=True, slots=True)
+class Settings:
+    """Settings that every renderer obeys in the same way; the defaults are the format's own.
+
+    Attributes:
+        width, height: picture size in pixels.
+        pixel: where in a pixel its ray passes, the top-left corner or the centre.
+        specular: Phong's max(0, r.v) or Blinn's max(0, n.h), both raised to alpha.
+        ior: read a finish's `ior` as n1/n2 up to 1 and as n2/n1 above ("auto"), or always as one of them.
+        background: linear RGB for rays that hit nothing; None means the ambient light's colour.
+        cutoff: a ray whose weight (the product of kr and kt so far) is below it is not traced.
+        max_depth: bounces after the primary ray; None means what the scene needs for the cut-off to act.
+        samples: rays per pixel, a square number n * n laid out as a grid.
+        seed: start of the random numbers of scenes that are sampled.
+        threads: worker threads; 0 means one for each core.
+
+    """
+
+    width: int = 800
+    height: int = 600
+    pixel: PixelSample = "corner"
+    specular: Specular = "phong"
+    ior: IorReading = "auto"
+    background: Color | None = None
+    cutoff: float = 1 / 512
+    max_depth: int | None = None
+    samples: int = 1
+    seed: int = 0
+    threads: int = 0

@@ -1,0 +1,28 @@
+"""The camera, its film and its sampler."""
+
+from typing import Any
+
+from converter.scene.model import Camera
+from converter.scene.settings import Settings
+
+
+def sensor(camera: Camera, settings: Settings) -> dict[str, Any]:
+    """A `pinhole` sensor with a film of single-precision RGB whose pixels are the plain mean of their samples."""
+    return {
+        "type": "pinhole",
+        "eye": list(camera.eye),
+        "look_at": list(camera.look_at),
+        "up": list(camera.up),
+        "fovy": camera.fovy,
+        "pixel_offset": -0.5 if settings.pixel == "corner" else 0.0,
+        "film": {
+            "type": "hdrfilm",
+            "width": settings.width,
+            "height": settings.height,
+            "pixel_format": "rgb",
+            "component_format": "float32",
+            "rfilter": {"type": "box"},
+        },
+        # The regular grid of n x n cells, for integrators that draw samples from it.
+        "sampler": {"type": "stratified", "sample_count": settings.samples, "jitter": False, "seed": settings.seed},
+    }

@@ -1,0 +1,35 @@
+"""The Whitted integrator: the ambient light, how deep to go, what the scene needs, and its exact surfaces."""
+
+import json
+from typing import Any, Literal
+
+from converter.scene.model import Scene
+from converter.scene.needs import SceneNeeds
+from converter.scene.settings import Settings
+from converter.to_mitsuba.lights import color
+
+Intersections = Literal["auto", "analytic", "mesh"]
+
+
+def integrator(
+    scene: Scene,
+    needs: SceneNeeds,
+    settings: Settings,
+    geometry: dict[str, Any],
+    intersections: Intersections = "auto",
+) -> dict[str, Any]:
+    """A `whitted` integrator; `geometry` maps each shape's name to its exact surface (see `surfaces`)."""
+    return {
+        "type": "whitted",
+        "geometry": json.dumps(geometry),
+        "ambient": color(scene.ambient),
+        "background": color(needs.background),
+        "max_depth": needs.max_depth,
+        "cutoff": settings.cutoff,
+        "reflection": needs.reflects,
+        "refraction": needs.refracts,
+        "branching": needs.branches,
+        "shadows": needs.lit,
+        "highlights": needs.glossy,
+        "intersections": intersections,
+    }

@@ -1,0 +1,54 @@
+"""Scene descriptions into Mitsuba's memory."""
+
+from typing import Any
+
+import numpy as np
+
+
+def load_description(description: dict[str, Any]) -> Any:
+    """The `mitsuba.Scene` of a description; Mitsuba's variant is set and our plugins are registered.
+
+    Raises:
+        RuntimeError: Mitsuba refuses it.
+
+    """
+    import mitsuba as mi
+
+    loaded: dict[str, Any] = {}
+    for name, element in description.items():
+        loaded[name] = _load(mi, name, _resolve(element, loaded)) if isinstance(element, dict) else element
+    # Mitsuba's optimisation would merge meshes, whose names and triangles the integrator's geometry refers to.
+    return mi.load_dict(loaded, optimize=False)
+
+
+def _resolve(element: dict[str, Any], loaded: dict[str, Any]) -> dict[str, Any]:
+    """An element whose references to earlier ones are those objects."""
+    return {
+        key: loaded[value["id"]] if isinstance(value, dict) and value["type"] == "ref" else value
+        for key, value in element.items()
+    }
+
+
+def _load(mi: Any, name: str, element: dict[str, Any]) -> Any:
+    if element["type"] == "mesh":
+        return _mesh(mi, name, element["mesh"], element["bsdf"])
+    if element["type"] == "projected_bitmap":
+        image = element["data"]
+        texels = np.asarray(image.texels, dtype=np.float32).ravel()
+        element = element | {"data": mi.TensorXf(texels, (image.height, image.width, 3))}
+    plugin = mi.load_dict(element)
+    plugin.set_id(name)
+    return plugin
+
+
+def _mesh(mi: Any, name: str, mesh: Any, bsdf: Any) -> Any:
+    props = mi.Properties()
+    props["mesh_bsdf"] = bsdf
+    props["face_normals"] = True
+    shape = mi.Mesh(name, len(mesh.vertices), len(mesh.triangles), props=props)
+    params = mi.traverse(shape)
+    params["vertex_positions"] = np.ravel(mesh.vertices).astype(np.float32)
+    params["faces"] = np.ravel(mesh.triangles).astype(np.uint32)
+    params.update()
+    shape.set_id(name)
+    return shape

@@ -1,0 +1,32 @@
+"""Pigments as textures."""
+
+from typing import Any
+
+from converter.images.texture import read_texture
+from converter.scene.model import Checker, Pigment, Solid
+from converter.to_mitsuba.lights import color
+
+
+def texture(pigment: Pigment) -> dict[str, Any]:
+    """An `srgb`, `solid_checker` or `projected_bitmap` texture; the latter's `data` is a `Texture` of ours.
+
+    Raises:
+        TextureError: the image of a texmap cannot be read.
+
+    """
+    if isinstance(pigment, Solid):
+        # Not "rgb", which takes no colour outside 0..1.
+        return {"type": "srgb", "color": color(pigment.color), "unbounded": True}
+    if isinstance(pigment, Checker):
+        return {
+            "type": "solid_checker",
+            "first": color(pigment.first),
+            "second": color(pigment.second),
+            "size": pigment.size,
+        }
+    return {
+        "type": "projected_bitmap",
+        "data": read_texture(pigment.file),
+        "to_s": " ".join(map(repr, pigment.p0)),
+        "to_r": " ".join(map(repr, pigment.p1)),
+    }

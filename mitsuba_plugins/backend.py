@@ -1,0 +1,147 @@
+"""Which Mitsuba variant runs on this machine, with which LLVM library, and the table of our plugins."""
+
+import ctypes.util
+import functools
+import importlib
+import os
+import re
+import sys
+from collections.abc import Iterator
+from dataclasses import dataclass
+from pathlib import Path
+from types import ModuleType
+
+VARIANTS = ("llvm_ad_rgb", "cuda_ad_rgb")
+"""Variants that the plugins run in. Python plugins do not work in Mitsuba's scalar variants."""
+
+PLUGINS = (
+    "mitsuba_plugins.textures.solid_checker",
+    "mitsuba_plugins.textures.projected_bitmap",
+    "mitsuba_plugins.bsdfs.phong",
+    "mitsuba_plugins.emitters.attenuated_point",
+    "mitsuba_plugins.sensors.pinhole",
+    "mitsuba_plugins.integrators.whitted",
+)
+"""Modules with one plugin each, which they register with Mitsuba when they are imported under a variant."""
+
+MINIMUM_LLVM = 19
+"""Dr.Jit 1.5 calls LLVM 14 and older missing, and aborts the process in code generation with 15 and 16."""
+
+_registered: set[str] = set()
+
+
+class BackendError(Exception):
+    """No Mitsuba variant that the plugins need can run here; the message says what to install."""
+
+
+@dataclass(frozen=True, slots=True)
+class LlvmLibrary:
+    """An LLVM shared library, and why it was chosen."""
+
+    path: Path
+    reason: str
+
+
+def find_llvm() -> LlvmLibrary | None:
+    """Choose the LLVM library for Dr.Jit: DRJIT_LIBLLVM_PATH, else the wheel's, else the newest of the system's."""
+    chosen = os.environ.get("DRJIT_LIBLLVM_PATH")
+    if chosen:
+        return LlvmLibrary(Path(chosen), "DRJIT_LIBLLVM_PATH is set")
+    wheel = sorted(Path(sys.prefix, "lib").glob("libLLVM.so.*"), key=_llvm_version)
+    if wheel and _llvm_version(wheel[-1]) >= MINIMUM_LLVM:
+        return LlvmLibrary(wheel[-1], "the karellen-llvm-core package of this Python environment")
+    system = max(_system_llvm(), key=_llvm_version, default=None)
+    if system is not None and _llvm_version(system) >= MINIMUM_LLVM:
+        return LlvmLibrary(system, f"newest LLVM of the system, at least version {MINIMUM_LLVM}")
+    return None
+
+
+def _llvm_version(library: Path) -> int:
+    """Major version in a library's file name: libLLVM.so.23.1, libLLVM-19.so, libLLVM-19.so.1; 0 if it names none."""
+    match = re.search(r"libLLVM(?:-(\d+)|\.so\.(\d+))", library.name)
+    return int(match[1] or match[2]) if match else 0
+
+
+def _system_llvm() -> Iterator[Path]:
+    for folder in ("/usr/lib", "/usr/lib64", "/usr/local/lib", "/opt/homebrew/opt/llvm/lib"):
+        for pattern in ("libLLVM*.so*", "*-linux-gnu/libLLVM*.so*", "llvm-*/lib/libLLVM*.so*"):
+            yield from Path(folder).glob(pattern)
+
+
+def set_variant(variant: str = "auto") -> str:
+    """Choose a variant, load Mitsuba in it, register our plugins, and return the variant's name.
+
+    Args:
+        variant: "llvm_ad_rgb", "cuda_ad_rgb", or "auto": CUDA where a device answers, else LLVM.
+
+    Raises:
+        BackendError: the variant cannot run here, or is none that the plugins work in.
+
+    """
+    if variant not in (*VARIANTS, "auto"):
+        raise BackendError(f"variant '{variant}' is not supported: expected one of {', '.join(VARIANTS)}, auto")
+    if variant == "auto":
+        variant = "cuda_ad_rgb" if has_cuda() else "llvm_ad_rgb"
+    if variant == "llvm_ad_rgb":
+        _prepare_llvm()
+    elif not has_cuda():
+        raise BackendError("cuda_ad_rgb: no CUDA device answers on this machine; use --variant llvm_ad_rgb")
+    import mitsuba
+
+    if mitsuba.variant() != variant:
+        mitsuba.set_variant(variant)
+    register()
+    return variant
+
+
+@functools.cache
+def has_cuda() -> bool:
+    """Whether the CUDA driver is installed and reports a device, asked without loading Dr.Jit."""
+    name = ctypes.util.find_library("cuda")
+    if name is None:
+        return False
+    try:
+        driver = ctypes.CDLL(name)
+        count = ctypes.c_int(0)
+        return driver.cuInit(0) == 0 and driver.cuDeviceGetCount(ctypes.byref(count)) == 0 and count.value > 0
+    except (OSError, AttributeError):
+        return False
+
+
+@functools.cache
+def _prepare_llvm() -> None:
+    """Name the LLVM library in the environment, where Dr.Jit looks when it first compiles."""
+    library = find_llvm()
+    if library is None:
+        raise BackendError(
+            f"Mitsuba's llvm_ad_rgb needs an LLVM library of version {MINIMUM_LLVM} or newer, and none was found. "
+            "On x86-64 Linux: pip install karellen-llvm-core. Elsewhere install your system's LLVM "
+            "(Debian: apt install llvm-19; macOS: brew install llvm), or set DRJIT_LIBLLVM_PATH to its library."
+        )
+    try:
+        ctypes.CDLL(str(library.path))
+    except OSError as error:
+        raise BackendError(f"the LLVM library {library.path} ({library.reason}) cannot be loaded: {error}") from error
+    os.environ["DRJIT_LIBLLVM_PATH"] = str(library.path)
+
+
+def register() -> None:
+    """Register every plugin for the variant that is set, once.
+
+    Mitsuba's base classes differ from variant to variant, so that a module that was imported under another variant is
+    loaded again.
+    """
+    import mitsuba
+
+    variant = mitsuba.variant()
+    if variant is None:
+        raise BackendError("no Mitsuba variant is set: call mitsuba_plugins.set_variant() first")
+    if variant in _registered:
+        return
+    for name in PLUGINS:
+        _load(name)
+    _registered.add(variant)
+
+
+def _load(name: str) -> ModuleType:
+    return importlib.reload(sys.modules[name]) if name in sys.modules else importlib.import_module(name)

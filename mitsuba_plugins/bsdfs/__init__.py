@@ -1,0 +1,1 @@
+"""Finishes as Mitsuba BSDFs."""

@@ -1,0 +1,1 @@
+"""Lights as Mitsuba emitters."""

@@ -1,0 +1,55 @@
+"""The exact surfaces of a scene: what Mitsuba's single-precision shapes were made from, as the integrator needs it.
+
+The description is a JSON object with one entry a shape, named by the shape's id, in the order in which ties go:
+
+    {"object_0": {"sphere": [x, y, z, r]},
+     "object_1": {"planes": {"0": [a, b, c, d], ...}, "triangles": [plane of each triangle of the mesh],
+                  "deviation": largest distance of a mesh vertex from its planes}}
+
+JSON writes the shortest digits that read back as the same double, so that nothing is lost in a file.
+"""
+
+import json
+import math
+from dataclasses import dataclass, field
+from typing import Any
+
+Plane = tuple[float, float, float, float]
+
+
+@dataclass(frozen=True, slots=True)
+class Surface:
+    """A sphere (center, radius) or a convex polyhedron (planes with unit normals, by their index in the scene)."""
+
+    name: str
+    sphere: Plane | None = None
+    planes: dict[int, Plane] = field(default_factory=dict)
+    triangles: tuple[int, ...] = ()
+    deviation: float = 0.0
+
+
+def parse_geometry(text: str) -> list[Surface]:
+    """Read a description.
+
+    Raises:
+        ValueError: it is not one.
+
+    """
+    try:
+        return [_surface(name, entry) for name, entry in json.loads(text).items()]
+    except (KeyError, TypeError, AttributeError, json.JSONDecodeError) as error:
+        raise ValueError(f"whitted: 'geometry' does not describe surfaces: {error}") from error
+
+
+def _surface(name: str, entry: dict[str, Any]) -> Surface:
+    if "sphere" in entry:
+        x, y, z, r = entry["sphere"]
+        return Surface(name, sphere=(x, y, z, r))
+    planes = {int(index): _normalised(plane) for index, plane in entry["planes"].items()}
+    return Surface(name, None, planes, tuple(entry["triangles"]), entry["deviation"])
+
+
+def _normalised(plane: list[float]) -> Plane:
+    a, b, c, d = plane
+    length = math.hypot(a, b, c)
+    return a / length, b / length, c / length, d / length

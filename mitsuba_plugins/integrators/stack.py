@@ -1,0 +1,36 @@
+"""A stack of rays in local memory, for ray trees in one kernel."""
+
+from typing import Any
+
+import drjit as dr
+import mitsuba as mi
+
+from mitsuba_plugins.integrators.rays import Ray
+
+
+class RayStack:
+    """Rays that wait for their turn, with their weights and depths: one small buffer for each of their numbers.
+
+    Small, since Dr.Jit 1.5 may crash with buffers of more than 128 bytes: 16 doubles, the deepest default of a tree.
+    Indices and masks have full width: an index of width 1 would make all SIMD lanes use one slot.
+    """
+
+    def __init__(self, size: int) -> None:
+        double, integer = mi.Float64, mi.UInt32
+        kinds = [double] * 7 + [integer] * 3 + [double, integer]
+        self._buffers = [dr.alloc_local(kind, size, value=kind(0)) for kind in kinds] if size else []
+
+    def write(self, slot: Any, ray: Ray, weight: Any, depth: Any, active: Any) -> None:
+        """Put a ray at `slot`."""
+        inside = dr.select(ray.inside, mi.UInt32(1), 0)
+        numbers = [*ray.o, *ray.d, ray.t_min, ray.object, ray.record, inside, weight, depth]
+        for buffer, number in zip(self._buffers, numbers, strict=True):
+            buffer.write(number, slot, active)
+
+    def read(self, slot: Any, active: Any) -> tuple[Ray, Any, Any]:
+        """The ray, weight and depth at `slot`."""
+        ox, oy, oz, dx, dy, dz, t_min, index, record, inside, weight, depth = (
+            buffer.read(slot, active) for buffer in self._buffers
+        )
+        o, d = mi.Point3d(ox, oy, oz), mi.Vector3d(dx, dy, dz)
+        return Ray(o, d, index, record, inside == 1, t_min), weight, depth

@@ -1,0 +1,350 @@
+"""Recursive ray tracing after Whitted, with the course's shading model, in double precision where it matters."""
+
+import math
+import time
+from typing import Any
+
+import drjit as dr
+import mitsuba as mi
+
+from mitsuba_plugins.integrators.analytic import AnalyticSurfaces
+from mitsuba_plugins.integrators.geometry import parse_geometry
+from mitsuba_plugins.integrators.mesh import MeshSurfaces
+from mitsuba_plugins.integrators.rays import NOTHING, Hit, Ray, power, reflect, refract, spawn, start_ray, unit
+from mitsuba_plugins.integrators.stack import RayStack
+from mitsuba_plugins.integrators.tables import Finish, Illumination, Lights, Materials, Records
+
+ANALYTIC_LIMIT = 64
+"""Spheres and planes, together, up to which `intersections` "auto" intersects them in the kernel."""
+
+FIRST_BAND, FIRST_BAND_BRANCHING = 1 << 19, 1 << 16
+"""Primary rays traced at once to begin with; trees that branch may take a hundred times longer than others."""
+SMALLEST_BAND, LARGEST_BAND = 1 << 14, 1 << 20
+"""Within these limits the size of a band is adapted ..."""
+BAND_SECONDS = 0.5
+"""... to this time."""
+
+
+class Whitted(mi.SamplingIntegrator):
+    r"""Whitted ray tracing integrator (``whitted``).
+
+    .. pluginparameters::
+
+     * - geometry
+       - |string|
+       - The exact surfaces, as a JSON text (see :mod:`mitsuba_plugins.integrators.geometry`)
+
+     * - filename
+       - |string|
+       - A file that holds that text, instead of ``geometry``
+
+     * - ambient, background
+       - |color|
+       - Linear RGB of the ambient light, and of rays that hit nothing (Default: 0)
+
+     * - max_depth
+       - |int|
+       - Bounces after the primary ray (Default: 16)
+
+     * - cutoff
+       - |float|
+       - A ray whose weight, the product of kr and kt so far, is below it is not traced (Default: 1/512)
+
+     * - reflection, refraction, branching
+       - |bool|
+       - Follow mirrored rays, refracted rays, and both from one surface (Default: true, true, true)
+
+     * - shadows
+       - |bool|
+       - Light surfaces by the scene's lights at all (Default: true)
+
+     * - highlights
+       - |bool|
+       - Evaluate the glossy term (Default: true)
+
+     * - intersections
+       - |string|
+       - ``analytic``: intersect spheres and half-spaces in the kernel; ``mesh``: let Embree or OptiX find which
+         surface is hit and compute where from the exact surface; ``auto``: the first for small scenes (Default: auto)
+
+    Every surface wears a ``phong`` BSDF, every light is an ``attenuated_point``. Switching off what a scene does not
+    need makes it faster and changes nothing else. Rays keep their origins and directions in double precision from
+    bounce to bounce, and, where the sensor is a ``pinhole``, from the camera on. Whitted, An Improved Illumination
+    Model for Shaded Display, Communications of the ACM 23(6), 1980. Not for indirect diffuse light, area lights or
+    gradients.
+    """
+
+    def __init__(self, props):
+        mi.SamplingIntegrator.__init__(self, props)
+        if ("geometry" in props) == ("filename" in props):
+            raise ValueError("whitted: give either 'geometry' or 'filename', the exact surfaces of the scene")
+        if "geometry" in props:
+            text = props["geometry"]
+        else:
+            with open(str(mi.file_resolver().resolve(props["filename"])), encoding="utf-8") as file:  # noqa: PTH123
+                text = file.read()
+        self.surfaces = parse_geometry(text)
+        self.ambient = mi.Color3f(props.get("ambient", mi.ScalarColor3d(0.0)))
+        self.background = mi.Color3f(props.get("background", mi.ScalarColor3d(0.0)))
+        self.max_depth = mi.UInt32(props.get("max_depth", 16))
+        self.cutoff = mi.Float64(props.get("cutoff", 1 / 512))
+        dr.make_opaque(self.ambient, self.background, self.max_depth, self.cutoff)
+        self.reflection = props.get("reflection", True)
+        self.refraction = props.get("refraction", True)
+        self.branching = props.get("branching", True) and self.reflection and self.refraction
+        self.shadows = props.get("shadows", True)
+        self.highlights = props.get("highlights", True)
+        self.intersections = props.get("intersections", "auto")
+        if self.intersections not in ("auto", "analytic", "mesh"):
+            raise ValueError(f"whitted: intersections is analytic, mesh or auto, not '{self.intersections}'")
+        if self.intersections == "auto":
+            size = sum(max(len(surface.planes), 1) for surface in self.surfaces)
+            self.intersections = "analytic" if size <= ANALYTIC_LIMIT else "mesh"
+        self.stack_size = max(1, props.get("max_depth", 16))
+        self._scene = None
+
+    # ------------------------------------------------------------------ preparation
+
+    def prepare(self, scene):
+        """Lay out what the kernel reads: surfaces, finishes, pigments, lights. `render` and `sample` call it."""
+        shapes = {shape.id(): shape for shape in scene.shapes()}
+        missing = [surface.name for surface in self.surfaces if surface.name not in shapes]
+        if missing or len(shapes) != len(self.surfaces):
+            raise ValueError(f"whitted: 'geometry' and the scene's shapes differ: {missing or list(shapes)[:8]}")
+        if self._scene is not scene:
+            self._scene = scene
+            self._records = Records(self.surfaces)
+            self.first_records = self._records.first
+            self._tracer: Any
+            if self.intersections == "analytic":
+                self._tracer = AnalyticSurfaces(self.surfaces, self.first_records)
+            else:
+                self._tracer = MeshSurfaces(scene, self.surfaces, self._records)
+        # Read anew each time: these are what mitsuba.traverse lets a user change.
+        self._materials = Materials([shapes[surface.name].bsdf() for surface in self.surfaces])
+        self._lights = Lights(scene.emitters())
+        self.light_count = self._lights.count
+
+    # ------------------------------------------------------------------ one ray
+
+    def closest(self, ray: Ray, active) -> Hit:
+        """The first surface that a ray meets, the point moved onto it to shed the error along the normal."""
+        t, index, record = self._tracer.closest(ray, active)
+        valid = active & (index != NOTHING)
+        p, n = self._records.surface_point(index, record, ray.o + t * ray.d, valid)
+        inside = dr.select(index == ray.object, ray.inside, dr.dot(n, ray.d) > 0)
+        return Hit(valid, t, index, record, p, n, inside)
+
+    def material(self, hit: Hit):
+        """The finish and the pigment's colour at a hit."""
+        finish = self._materials.finish(hit.object, hit.valid)
+        return finish, self._materials.color(hit.object, hit.p, hit.valid)
+
+    def light(self, index, ray: Ray, hit: Hit, finish: Finish, color, active) -> Illumination:
+        """What one light, by its index, adds at a hit."""
+        position, emission, (a, b, c) = self._lights.get(index, active)
+        to_light = position - hit.p
+        distance = dr.norm(to_light)
+        to_light = to_light / distance
+        n = dr.select(hit.inside, -hit.n, hit.n)
+        cosine = dr.dot(n, to_light)
+        facing = active & (cosine > 0)
+        blocker = self._tracer.blocker(spawn(hit, to_light, hit.inside), distance, facing)
+        attenuation = a + distance * (b + distance * c)
+        irradiance = (emission / mi.Float(attenuation)) & facing & (blocker == NOTHING)
+        diffuse = irradiance * color * (finish.kd * mi.Float(cosine))
+        specular = mi.Color3f(0)
+        if self.highlights:
+            specular = irradiance * (finish.ks * self._highlight(ray, n, to_light, finish.alpha))
+        return Illumination(cosine, attenuation, blocker, diffuse, specular)
+
+    def _highlight(self, ray: Ray, n, to_light, alpha):
+        cosine = dr.dot(n, unit(to_light - ray.d)) if self._materials.blinn else dr.dot(reflect(ray.d, n), to_light)
+        # In double precision: an exponent of 1000 multiplies the cosine's relative error by 1000.
+        return mi.Float(power(dr.maximum(cosine, 0), alpha))
+
+    def reflected(self, ray: Ray, hit: Hit) -> Ray:
+        """The mirrored ray."""
+        return spawn(hit, reflect(ray.d, hit.n), hit.inside)
+
+    def transmitted(self, ray: Ray, hit: Hit, eta) -> tuple[Ray, Any]:
+        """The refracted ray, or the mirrored one past the critical angle, and whether it is past."""
+        eta = dr.select(hit.inside, 1 / eta, eta)
+        n = dr.select(hit.inside, -hit.n, hit.n)
+        d, total = refract(ray.d, n, eta)
+        return spawn(hit, d, hit.inside == total), total
+
+    # ------------------------------------------------------------------ the ray tree
+
+    @dr.syntax
+    def trace(self, ray: Ray, active):
+        """Radiance (Color3f) along rays: the whole tree below each, in one kernel.
+
+        Where a surface sends on two rays, the refracted one waits on a stack in local memory.
+        """
+        # Everything starts at full width: with an index of width 1, all SIMD lanes would share one stack.
+        width = dr.width(ray.d)
+        radiance = dr.zeros(mi.Color3f, width)
+        weight = dr.full(mi.Float64, 1, width)
+        depth = dr.zeros(mi.UInt32, width)
+        active = mi.Bool(active) & dr.full(mi.Bool, True, width)
+        waiting = dr.zeros(mi.UInt32, width)
+        stack = RayStack(self.stack_size if self.branching else 0)
+        while active:
+            hit = self.closest(ray, active)
+            finish, color = self.material(hit)
+            local = self._local_radiance(ray, hit, finish, color)
+            radiance += mi.Float(weight) * dr.select(hit.valid, local, self.background)
+
+            depth += 1
+            follows = hit.valid & (depth <= self.max_depth)
+            mirror_weight, mirrors = self._successor_weight(self.reflection, weight * finish.kr, follows)
+            through_weight, refracts = self._successor_weight(self.refraction, weight * finish.kt, follows)
+            active = mirrors | refracts
+            weight = dr.select(mirrors, mirror_weight, through_weight)
+            if dr.hint(self.branching, mode="scalar"):
+                through = self.transmitted(ray, hit, finish.eta)[0]
+                pushes = mirrors & refracts
+                stack.write(waiting, through, through_weight, depth, pushes)
+                waiting += dr.select(pushes, mi.UInt32(1), 0)
+                ray = dr.select(mirrors, self.reflected(ray, hit), through)
+                resumes = ~active & (waiting > 0)
+                waiting -= dr.select(resumes, mi.UInt32(1), 0)
+                waiting_ray, waiting_weight, waiting_depth = stack.read(waiting, resumes)
+                ray = dr.select(resumes, waiting_ray, ray)
+                weight = dr.select(resumes, waiting_weight, weight)
+                depth = dr.select(resumes, waiting_depth, depth)
+                active |= resumes
+            elif dr.hint(self.reflection and self.refraction, mode="scalar"):
+                ray = dr.select(mirrors, self.reflected(ray, hit), self.transmitted(ray, hit, finish.eta)[0])
+            elif dr.hint(self.reflection, mode="scalar"):
+                ray = self.reflected(ray, hit)
+            elif dr.hint(self.refraction, mode="scalar"):
+                ray = self.transmitted(ray, hit, finish.eta)[0]
+        return radiance
+
+    def _successor_weight(self, enabled, weight, active):
+        """Weight of a mirrored or refracted ray, and where it is followed."""
+        if not enabled:
+            return mi.Float64(0), mi.Bool(False)
+        return weight, active & (weight > 0) & (weight >= self.cutoff)
+
+    @dr.syntax
+    def _local_radiance(self, ray: Ray, hit: Hit, finish: Finish, color):
+        radiance = finish.ka * self.ambient * color
+        if dr.hint(self.shadows, mode="scalar"):
+            lit = hit.valid & (finish.kd + finish.ks > 0)
+            light = dr.zeros(mi.UInt32, dr.width(ray.d))
+            while lit & (light < self.light_count):
+                illumination = self.light(light, ray, hit, finish, color, lit)
+                radiance += illumination.diffuse + illumination.specular
+                light += 1
+        return radiance
+
+    # ------------------------------------------------------------------ pictures
+
+    def sample(self, scene, sampler, ray, medium=None, active=True):
+        """Radiance along single-precision rays, of any sensor."""
+        self.prepare(scene)
+        color = self.trace(start_ray(mi.Point3d(ray.o), unit(mi.Vector3d(ray.d))), active)
+        return color, mi.Bool(active), []
+
+    def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
+        """Draw a picture. The samples of a pixel lie on a regular grid: in the centres of n x n = `spp` cells."""
+        if isinstance(sensor, int):
+            sensor = scene.sensors()[sensor]
+        film = sensor.film()
+        film.prepare([])
+        bands = [color for _, color in self.bands(scene, sensor, spp)]
+        film.put_block(_block(bands, film))
+        if not develop:
+            return None
+        image = film.develop()
+        if evaluate:
+            dr.eval(image)
+        return image
+
+    def bands(self, scene, sensor, spp=0):
+        """Draw a picture in bands of rows, so that neither memory nor the time without a sign of life grow with its
+        size.
+
+        Yields:
+            The first row of a finished band within the film's crop window, and its pixels' colours (Color3f), row by
+            row.
+
+        """
+        offsets = self.sample_offsets(spp or sensor.sampler().sample_count())
+        self.prepare(scene)
+        width, height = sensor.film().crop_size()
+        crop_offset = mi.Point2d(sensor.film().crop_offset())
+        rays = FIRST_BAND_BRANCHING if self.branching else FIRST_BAND
+        first = 0
+        while first < height:
+            rows = min(height - first, max(1, rays // (width * len(offsets))))
+            started = time.perf_counter()
+            pixel = dr.arange(mi.UInt32, rows * width)
+            row = pixel // dr.opaque(mi.UInt32, width)
+            corner = mi.Point2d(pixel - row * width, row + dr.opaque(mi.UInt32, first)) + crop_offset
+            color = mi.Color3f(0)
+            with dr.suspend_grad():
+                for x, y in offsets:
+                    # Opaque, so that all samples share one kernel.
+                    position = corner + mi.Point2d(dr.opaque(mi.Float64, x), dr.opaque(mi.Float64, y))
+                    color += self.trace(self.primary_ray(sensor, position), True)
+                    dr.eval(color)
+                color = color / len(offsets)
+                dr.eval(color)
+                dr.sync_thread()
+            yield first, color
+            first += rows
+            share = BAND_SECONDS / max(time.perf_counter() - started, 1e-3)
+            rays = int(min(max(rays * min(share, 4), SMALLEST_BAND), LARGEST_BAND))
+
+    @staticmethod
+    def sample_offsets(spp):
+        """Positions of a pixel's samples, in pixels from its top left corner.
+
+        Raises:
+            ValueError: `spp` is no square number.
+
+        """
+        n = math.isqrt(spp)
+        if n * n != spp:
+            raise ValueError(f"whitted: samples per pixel are laid out as a grid, and {spp} is no square number")
+        return [((cell % n + 0.5) / n, (cell // n + 0.5) / n) for cell in range(spp)]
+
+    @staticmethod
+    def primary_ray(sensor, position) -> Ray:
+        """The ray through a film position (Point2d, in pixels), in double precision where the sensor has it."""
+        if hasattr(sensor, "primary_ray"):
+            return start_ray(*sensor.primary_ray(position))
+        size, offset = sensor.film().crop_size(), sensor.film().crop_offset()
+        sample = mi.Point2f((position - mi.Point2d(offset)) / mi.Point2d(size))
+        ray, _ = sensor.sample_ray(0.0, 0.5, sample, mi.Point2f(0.5))
+        return start_ray(mi.Point3d(ray.o), unit(mi.Vector3d(ray.d)))
+
+    def traverse(self, callback):
+        callback.put("ambient", self.ambient, mi.ParamFlags.NonDifferentiable)
+        callback.put("background", self.background, mi.ParamFlags.NonDifferentiable)
+        callback.put("cutoff", self.cutoff, mi.ParamFlags.NonDifferentiable)
+        callback.put("max_depth", self.max_depth, mi.ParamFlags.NonDifferentiable)
+
+    def to_string(self):
+        return f"Whitted[{len(self.surfaces)} surfaces, {self.intersections}, max_depth={self.max_depth}]"
+
+
+def _block(bands, film):
+    """Rows of pixel colours as a film takes them up: cheaper than to splat them, and the same for a box filter."""
+    width, height = film.crop_size()
+    # After red, green and blue come alpha, where the film has it, and the sum of the filter's weights: all 1.
+    count = film.base_channels_count() + 1
+    ones = dr.full(mi.Float, 1, width * height)
+    channels = [dr.concat([band[k] for band in bands]) for k in range(3)] + [ones] * (count - 3)
+    pixels = dr.empty(mi.Float, width * height * count)
+    index = dr.arange(mi.UInt32, width * height) * count
+    for k, channel in enumerate(channels):
+        dr.scatter(pixels, channel, index + k)
+    return mi.ImageBlock(mi.TensorXf(pixels, (height, width, count)), film.crop_offset(), film.rfilter(), border=False)
+
+
+mi.register_integrator("whitted", Whitted)

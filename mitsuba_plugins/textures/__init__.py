@@ -1,0 +1,1 @@
+"""Pigments as Mitsuba textures."""

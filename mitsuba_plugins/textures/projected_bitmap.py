@@ -1,0 +1,87 @@
+"""An image projected through space: the course's `texmap` pigment."""
+
+import drjit as dr
+import mitsuba as mi
+
+
+class ProjectedBitmap(mi.Texture):
+    r"""Projected bitmap texture (``projected_bitmap``).
+
+    .. pluginparameters::
+
+     * - filename
+       - |string|
+       - Path of the image, in any format that Mitsuba reads; integer formats are scaled to 0..1 and not gamma corrected
+
+     * - data
+       - |tensor|
+       - The image as a (height, width, 3) tensor of linear RGB instead of a file
+
+     * - to_s, to_r
+       - |string|
+       - Four numbers each, :math:`P_0` and :math:`P_1`: the image position of a point is :math:`s = P_0 \cdot (x, y,
+         z, 1)` along the columns and :math:`r = P_1 \cdot (x, y, z, 1)` along the rows, 1 spanning the whole image
+
+    The texel at column :math:`\mathrm{trunc}(s\,w) \bmod w` and row :math:`\mathrm{trunc}(r\,h) \bmod h` is the colour:
+    the image repeats, row 0 is on top, and nothing is filtered. Truncation makes the first texel two wide around 0.
+    """
+
+    def __init__(self, props):
+        mi.Texture.__init__(self, props)
+        image = props["data"] if "data" in props else _read(props["filename"])
+        self.height, self.width = image.shape[0], image.shape[1]
+        self.texels = mi.Float(image.array)
+        self.to_s = _row(props["to_s"])
+        self.to_r = _row(props["to_r"])
+        dr.make_opaque(self.texels, self.to_s, self.to_r)
+
+    def color_at(self, p):
+        """Colour at a position of either precision, Point3d for exact texel boundaries."""
+        p = mi.Point3d(p)
+        column = self._texel(self.to_s, p, self.width)
+        row = self._texel(self.to_r, p, self.height)
+        return dr.gather(mi.Color3f, self.texels, row * self.width + column)
+
+    @staticmethod
+    def _texel(projection, p, count):
+        a, b, c, d = projection
+        position = dr.trunc((a * p.x + b * p.y + c * p.z + d) * count)
+        # The remainder is taken in floating point: far from the origin the position would overflow an integer.
+        remainder = position - dr.floor(position / count) * count
+        # A NaN or a rounded remainder must not read outside the image.
+        return mi.UInt32(dr.fmin(dr.fmax(remainder, 0), count - 1))
+
+    def eval(self, si, active=True):
+        return self.color_at(si.p) & active
+
+    def eval_3(self, si, active=True):
+        return self.eval(si, active)
+
+    def mean(self):
+        return dr.mean(self.texels)
+
+    def is_spatially_varying(self):
+        return True
+
+    def traverse(self, callback):
+        callback.put("texels", self.texels, mi.ParamFlags.Differentiable)
+
+    def to_string(self):
+        return f"ProjectedBitmap[{self.width} x {self.height}, to_s={self.to_s}, to_r={self.to_r}]"
+
+
+def _read(filename):
+    path = mi.file_resolver().resolve(filename)
+    bitmap = mi.Bitmap(str(path)).convert(mi.Bitmap.PixelFormat.RGB, mi.Struct.Type.Float32, srgb_gamma=False)
+    return mi.TensorXf(bitmap)
+
+
+def _row(text):
+    # A string, since Mitsuba's scene files have no vector of four numbers.
+    numbers = [float(word) for word in text.replace(",", " ").split()]
+    if len(numbers) != 4:
+        raise ValueError(f"projected_bitmap: to_s and to_r take 4 numbers each, got '{text}'")
+    return [mi.Float64(number) for number in numbers]
+
+
+mi.register_texture("projected_bitmap", ProjectedBitmap)
