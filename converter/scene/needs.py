@@ -2,9 +2,13 @@
 
 import math
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
-from converter.scene.model import Color, Finish, Polyhedron, Scene
+from converter.scene.model import Color, Finish, Polyhedron, Scene, Vector
 from converter.scene.settings import IorReading, Settings
+
+if TYPE_CHECKING:
+    from native_tracer.halfspaces import PolyhedronFacts
 
 MAX_DEPTH = 64
 """Deepest default for scenes in which every ray has at most one successor."""
@@ -26,6 +30,7 @@ class SceneNeeds:
         max_depth: bounces to follow after the primary ray.
         background: linear RGB of rays that hit nothing.
         planes: for each object the indices of the planes that have a face, ascending; for a sphere none.
+        boxes: for each bounded polyhedron the lower and the upper corner of the box around it; for others None.
 
     """
 
@@ -40,6 +45,7 @@ class SceneNeeds:
     max_depth: int
     background: Color
     planes: tuple[tuple[int, ...], ...]
+    boxes: tuple[tuple[Vector, Vector] | None, ...]
 
     @property
     def bounces(self) -> bool:
@@ -55,6 +61,7 @@ def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
     reflects = any(f.kr > 0 and f.kr >= settings.cutoff for f in used)
     refracts = any(f.kt > 0 and f.kt >= settings.cutoff for f in used)
     branches = any(min(f.kr, f.kt) > 0 and min(f.kr, f.kt) >= settings.cutoff for f in used)
+    facts = _polyhedron_facts(scene)
     max_depth = settings.max_depth if settings.max_depth is not None else default_depth(used, settings.cutoff)
     if not (reflects or refracts):
         max_depth = 0
@@ -70,18 +77,20 @@ def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
         glossy=bool(scene.lights) and any(f.ks > 0 for f in used),
         max_depth=max_depth,
         background=scene.ambient if settings.background is None else settings.background,
-        planes=_planes_with_a_face(scene),
+        planes=tuple(f.kept if f else () for f in facts),
+        boxes=tuple((f.low, f.high) if f and f.bounded else None for f in facts),
     )
 
 
-def _planes_with_a_face(scene: Scene) -> tuple[tuple[int, ...], ...]:
+def _polyhedron_facts(scene: Scene) -> "list[PolyhedronFacts | None]":
+    """Facts about each object that is a polyhedron."""
     polyhedra = [o.shape.planes for o in scene.objects if isinstance(o.shape, Polyhedron)]
     if not polyhedra:
-        return ((),) * len(scene.objects)
+        return [None] * len(scene.objects)
     from native_tracer.halfspaces import polyhedron_facts
 
     facts = iter(polyhedron_facts(polyhedra))
-    return tuple(next(facts).kept if isinstance(o.shape, Polyhedron) else () for o in scene.objects)
+    return [next(facts) if isinstance(o.shape, Polyhedron) else None for o in scene.objects]
 
 
 def default_depth(finishes: list[Finish], cutoff: float) -> int:

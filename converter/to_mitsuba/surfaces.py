@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from converter.scene.model import Object, Polyhedron, Scene, Sphere
+from converter.scene.model import Object, Polyhedron, Scene, Sphere, Vector
 from converter.scene.needs import SceneNeeds
 from converter.scene.settings import Settings
 
@@ -22,7 +22,9 @@ def surfaces(scene: Scene, needs: SceneNeeds, settings: Settings) -> tuple[dict[
     for i, o in enumerate(scene.objects):
         name = f"object_{i}"
         shapes[name], geometry[name] = (
-            _sphere(o.shape) if isinstance(o.shape, Sphere) else _polyhedron(o, o.shape, needs.planes[i], bounds)
+            _sphere(o.shape)
+            if isinstance(o.shape, Sphere)
+            else _polyhedron(o, o.shape, needs.planes[i], needs.boxes[i], bounds)
         )
         shapes[name]["bsdf"] = {"type": "ref", "id": f"finish_{o.finish}_pigment_{o.pigment}"}
     return shapes, geometry
@@ -34,7 +36,7 @@ def _sphere(sphere: Sphere) -> tuple[dict[str, Any], dict[str, Any]]:
 
 
 def _polyhedron(
-    o: Object, polyhedron: Polyhedron, kept: tuple[int, ...], bounds: Any
+    o: Object, polyhedron: Polyhedron, kept: tuple[int, ...], box: tuple[Vector, Vector] | None, bounds: Any
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     from converter.to_mitsuba.polyhedra import polyhedron_mesh
 
@@ -42,6 +44,7 @@ def _polyhedron(
     surface = {
         "planes": {str(index): list(polyhedron.planes[index]) for index in kept},
         "triangles": mesh.planes.tolist(),
+        "box": box,
         "deviation": mesh.deviation,
     }
     return {"type": "mesh", "mesh": mesh}, surface

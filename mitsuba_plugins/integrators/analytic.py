@@ -26,14 +26,17 @@ class AnalyticSurfaces:
         self._first = first
         self._spheres: list[Any] = []
         self._planes: list[Any] = []
+        self._bounds: list[Any] = []
         for surface in surfaces:
             if surface.sphere is not None:
                 x, y, z, r = (mi.Float64(number) for number in surface.sphere)
                 self._spheres.append((mi.Point3d(x, y, z), r))
             else:
                 self._spheres.append(None)
+            x, y, z, r = (mi.Float64(number) for number in surface.bound or (0.0,) * 4)
+            self._bounds.append((mi.Point3d(x, y, z), r) if surface.bound else None)
             self._planes.append([(mi.Normal3d(*p[:3]), mi.Float64(p[3])) for p in surface.planes.values()])
-        dr.make_opaque(self._spheres, self._planes)
+        dr.make_opaque(self._spheres, self._planes, self._bounds)
 
     def closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any]:
         """Distance (infinite for none), object (NOTHING for none) and record of the first hit."""
@@ -63,7 +66,21 @@ class AnalyticSurfaces:
         own = ray.object == index
         if self._spheres[index] is not None:
             return sphere_distance(*self._spheres[index], ray, own), mi.UInt32(self._first[index])
+        if self._bounds[index] is not None:
+            return self._intersect_bounded(index, ray, own)
         return self._intersect_planes(index, ray, own)
+
+    @dr.syntax
+    def _intersect_bounded(self, index: int, ray: Ray, own: Any) -> tuple[Any, Any]:
+        """A branch and no mask: most packets of rays pass by most polyhedra and save their planes."""
+        t = dr.full(mi.Float64, dr.inf, dr.width(ray.d))
+        record = dr.zeros(mi.UInt32, dr.width(ray.d))
+        center, radius = self._bounds[index]
+        f = ray.o - center
+        b = -dr.dot(f, ray.d)
+        if (dr.squared_norm(f + b * ray.d) <= radius * radius) & (b > -radius):
+            t, record = self._intersect_planes(index, ray, own)
+        return t, record
 
     def _intersect_planes(self, index: int, ray: Ray, own: Any) -> tuple[Any, Any]:
         """Haines, Fast Ray-Convex Polyhedron Intersection, Graphics Gems II, 1991."""

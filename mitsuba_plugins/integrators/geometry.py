@@ -4,6 +4,7 @@ The description is a JSON object with one entry a shape, named by the shape's id
 
     {"object_0": {"sphere": [x, y, z, r]},
      "object_1": {"planes": {"0": [a, b, c, d], ...}, "triangles": [plane of each triangle of the mesh],
+                  "box": [its lower corner, its upper corner] or null where it is unbounded,
                   "deviation": largest distance of a mesh vertex from its planes}}
 
 JSON writes the shortest digits that read back as the same double, so that nothing is lost in a file.
@@ -24,6 +25,7 @@ class Surface:
     name: str
     sphere: Plane | None = None
     planes: dict[int, Plane] = field(default_factory=dict)
+    bound: Plane | None = None  # a sphere around a bounded polyhedron
     triangles: tuple[int, ...] = ()
     deviation: float = 0.0
 
@@ -46,7 +48,16 @@ def _surface(name: str, entry: dict[str, Any]) -> Surface:
         x, y, z, r = entry["sphere"]
         return Surface(name, sphere=(x, y, z, r))
     planes = {int(index): _normalised(plane) for index, plane in entry["planes"].items()}
-    return Surface(name, None, planes, tuple(entry["triangles"]), entry["deviation"])
+    box = entry["box"]
+    bound = _sphere_around(*box) if box is not None else None
+    return Surface(name, None, planes, bound, tuple(entry["triangles"]), entry["deviation"])
+
+
+def _sphere_around(low: list[float], high: list[float]) -> Plane:
+    x, y, z = ((a + b) / 2 for a, b in zip(low, high, strict=True))
+    # A little larger than the box, for the roundings here and in the kernel.
+    reach = max(map(abs, [*low, *high]))
+    return x, y, z, math.dist(low, high) / 2 + 1e-9 * reach
 
 
 def _normalised(plane: list[float]) -> Plane:

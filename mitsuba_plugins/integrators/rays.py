@@ -26,7 +26,7 @@ class Ray:
 
     o: Any
     d: Any
-    object: Any  # UInt32, NOTHING for a primary ray
+    object: Any  # UInt32, NOTHING for a primary ray, as is `record`
     record: Any  # UInt32, the record of the sphere or plane that o lies on, see `tables`
     inside: Any  # Bool, whether the ray travels inside `object`
     t_min: Any  # Float64
@@ -52,7 +52,7 @@ def start_ray(o: Any, d: Any) -> Ray:
         o=mi.Point3d(o) + dr.zeros(mi.Point3d, width),
         d=mi.Vector3d(d),
         object=dr.full(mi.UInt32, NOTHING, width),
-        record=dr.zeros(mi.UInt32, width),
+        record=dr.full(mi.UInt32, NOTHING, width),
         inside=dr.full(mi.Bool, False, width),
         t_min=dr.zeros(mi.Float64, width),
     )

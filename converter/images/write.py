@@ -1,0 +1,154 @@
+"""Writes pictures: PPM directly, all other formats through OpenImageIO.
+
+No object of OpenImageIO is kept at module level: nanobind would report it as leaked when Mitsuba is loaded as well.
+"""
+
+import errno
+import os
+from contextlib import suppress
+from pathlib import Path
+from typing import Any
+
+COMMON_ENDINGS = (".ppm", ".png", ".exr", ".jpg", ".tif", ".hdr", ".pfm", ".bmp", ".tga", ".webp")
+"""Endings to suggest; OpenImageIO knows more."""
+FLOAT_ENDINGS = frozenset({".exr", ".hdr", ".pfm", ".tif", ".tiff"})
+"""Formats that keep the floats as they are, neither clamped nor rounded."""
+_NO_FILES = frozenset({".term", ".null", ".nul"})  # OpenImageIO's outputs that leave no file
+_HARMLESS = "TIFFWriteCustomDirectory"  # OpenImageIO complains so of every TIFF file, and all is well with it
+
+
+class ImageError(OSError):
+    """A picture cannot be written; the message names the file and says why."""
+
+
+def check_writable(path: str | Path) -> None:
+    """See that `write_image` could write `path`, so that no one waits for a picture that cannot be saved.
+
+    Raises:
+        ImageError: its ending is unknown, its folder missing or not writable, or it is a folder itself.
+    """
+    path = Path(path)
+    _check_ending(path)
+    try:
+        temporary = _temporary(_target(path), path.suffix)
+        try:
+            temporary.touch(exist_ok=False)
+        finally:
+            _remove(temporary)
+    except OSError as error:
+        raise ImageError(f"{path}: {_reason(error, path)}") from error
+
+
+def write_image(path: str | Path, pixels: Any, width: int, height: int) -> None:
+    """Write a picture; the ending of `path` chooses the format.
+
+    Formats of 8 bits hold round(255 c), c clamped to 0..1 and NaN as 0, with no gamma; those of `FLOAT_ENDINGS` hold c.
+    The file appears as a whole or not at all, whatever happens; an older one is replaced.
+
+    Args:
+        path: the file; if it is a link, what it points to is written.
+        pixels: buffer of height x width x 3 float32, linear RGB, row 0 on top.
+        width: columns.
+        height: rows.
+
+    Raises:
+        ImageError: it cannot be written.
+        ValueError: `pixels` has another size.
+    """
+    path = Path(path)
+    values = memoryview(pixels)
+    if values.format != "f" or not values.c_contiguous or values.nbytes != 12 * width * height or width < 1:
+        expected = f"{width} x {height} pixels of three float32, one after the other"
+        raise ValueError(f"expected {expected}, found {values.nbytes} bytes of format {values.format!r}")
+    _check_ending(path)
+    try:
+        target = _target(path)
+        temporary = _temporary(target, path.suffix)
+        try:
+            if path.suffix.lower() == ".ppm":
+                _write_ppm(temporary, values, width, height)
+            else:
+                _write_other(temporary, values, width, height)
+            temporary.replace(target)
+        finally:  # an interrupt too
+            _remove(temporary)
+    except OSError as error:
+        raise ImageError(f"{path}: {_reason(error, path)}") from error
+
+
+def _write_ppm(path: Path, values: memoryview, width: int, height: int) -> None:
+    from native_tracer import quantize
+
+    with path.open("xb") as file:
+        file.write(b"P6\n%d %d\n255\n" % (width, height))
+        file.write(quantize(values))
+
+
+def _write_other(path: Path, values: memoryview, width: int, height: int) -> None:
+    import OpenImageIO as oiio  # noqa: N813 - its own documentation's name
+
+    if path.suffix.lower() in FLOAT_ENDINGS:
+        format_, data = oiio.FLOAT, values.cast("B").cast("f")
+    else:
+        from native_tracer import quantize
+
+        format_, data = oiio.UINT8, memoryview(quantize(values))
+    # Room is taken first: OpenImageIO does not notice a full disk in every format, and its WebP then never returns.
+    with path.open("xb") as file:
+        os.posix_fallocate(file.fileno(), 0, data.nbytes + 65536)
+        file.truncate(0)
+    output = oiio.ImageOutput.create(str(path))
+    if output is None:
+        raise OSError(oiio.geterror())
+    done = output.open(str(path), oiio.ImageSpec(width, height, 3, format_))
+    done = done and output.write_image(data)
+    done = output.close() and done
+    complaints = [line for line in output.geterror().splitlines() if _HARMLESS not in line]
+    if not done or complaints:
+        raise OSError(complaints[0] if complaints else "OpenImageIO does not say why")
+
+
+def _check_ending(path: Path) -> None:
+    """Raise `ImageError` for a format that nobody writes."""
+    ending = path.suffix.lower()
+    if ending == ".ppm":
+        return
+    if ending and ending not in _NO_FILES:
+        import OpenImageIO as oiio  # noqa: N813
+
+        if oiio.ImageOutput.create(f"picture{ending}") is not None:
+            return
+        oiio.geterror()  # clears it
+    found = f"unknown picture format {ending!r}" if ending else "no ending that says which picture format is meant"
+    raise ImageError(f"{path}: {found}; use one of {', '.join(COMMON_ENDINGS)}")
+
+
+def _target(path: Path) -> Path:
+    """The file to replace: what `path` points to, if it is a link."""
+    try:
+        target = path.resolve() if path.is_symlink() else path
+    except RuntimeError as error:
+        raise OSError(errno.ELOOP, "this is a link that leads to itself") from error
+    if target.is_dir():
+        raise IsADirectoryError(errno.EISDIR, "this is a folder")
+    if target.exists() and not os.access(target, os.W_OK):  # replacing it would succeed, and is not wanted
+        raise PermissionError(errno.EACCES, "the file there is write-protected")
+    return target
+
+
+def _temporary(target: Path, ending: str) -> Path:
+    """A new name beside `target`, so on the same file system, with the ending that tells the format."""
+    return target.with_name(f".whitted-{os.getpid()}-{os.urandom(4).hex()}{ending}")
+
+
+def _remove(temporary: Path) -> None:
+    with suppress(OSError):  # it was never made, or is already in its place
+        temporary.unlink()
+
+
+def _reason(error: OSError, path: Path) -> str:
+    if isinstance(error, FileNotFoundError):
+        return f"there is no folder {str(path.parent)!r}"
+    if isinstance(error, NotADirectoryError):
+        return f"{str(path.parent)!r} is not a folder"
+    return (error.strerror or str(error)).strip().lower()

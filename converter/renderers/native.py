@@ -1,0 +1,174 @@
+"""The native tracer, seen as one of the renderers: builds its scene from ours, and only what can be seen."""
+
+import os
+import time
+from dataclasses import dataclass
+from types import ModuleType
+from typing import Any, Literal
+
+from converter.renderers.base import Interrupted, Progress, RendererUnavailable, Rendering
+from converter.scene.model import Checker, Object, Pigment, Scene, Solid, Sphere
+from converter.scene.needs import SceneNeeds, scene_needs
+from converter.scene.settings import Settings
+
+Precision = Literal["float", "double", "long double"]
+
+
+@dataclass(frozen=True)
+class NativeRenderer:
+    """Draws with `native_tracer`, in the given precision: "double" is the reference, "long double" checks it."""
+
+    precision: Precision = "double"
+
+    @property
+    def name(self) -> str:
+        """E.g. "native-double"."""
+        return "native-" + self.precision.replace(" ", "-")
+
+    def render(self, scene: Scene, settings: Settings, progress: Progress | None = None) -> Rendering:
+        """Draw `scene`.
+
+        Raises:
+            RendererUnavailable: the native module is not built.
+            ValueError: a texture cannot be read, or `settings` make no sense.
+            Interrupted: Ctrl-C while it was drawing.
+
+        """
+        tracer = native_module()
+        started = time.perf_counter()
+        needs = scene_needs(scene, settings)
+        native_scene = build_scene(scene, needs)
+        image = tracer.Image(settings.width, settings.height)
+        built = time.perf_counter()
+
+        def rendering() -> Rendering:
+            seconds = {"build": built - started, "render": time.perf_counter() - built}
+            statistics = image.statistics
+            rays = sum(statistics[kind] for kind in ("primary", "reflected", "transmitted", "shadow"))
+            return Rendering(image.pixels, image.width, image.height, seconds, {"rays": rays, **statistics})
+
+        threads = settings.threads or available_cores()
+        try:
+            tracer.render(native_scene, image, threads=threads, progress=progress, **self._options(settings, needs))
+        except KeyboardInterrupt:
+            raise Interrupted(rendering()) from None
+        return rendering()
+
+    def trace_pixel(self, scene: Scene, settings: Settings, x: int, y: int) -> dict[str, Any]:
+        """Trace one pixel, column `x` and row `y` from the top-left corner, and return every ray of it.
+
+        Returns `{"x", "y", "color", "rays"}`: the pixel's colour as `render` leaves it, and its primary rays, each with
+
+            kind: "primary", "reflected" or "transmitted"
+            weight: product of the kr and kt that lead to it
+            depth: bounces before it
+            origin, direction: three numbers each; the direction is a unit vector
+            hit: None, or what it hits (below)
+            local: its colour without its successors'; the background's where nothing is hit
+            radiance: its colour with its successors', not multiplied by its own weight
+            dropped: {"reflected" | "transmitted": "cutoff" | "depth"}, successors that were not traced and why
+            children: its successors, rays like it
+
+        and for a hit
+
+            object, plane: indices in the scene and, in a polyhedron (else None), of the plane
+            t: distance along the ray
+            point, normal: where; the normal is the outward one
+            entering: whether the ray meets the surface from outside
+            pigment: colour of the material there
+            total_reflection: whether the transmitted ray follows the mirror direction
+            lights: for each light, {"light", "cosine", "shadowed_by", "attenuation", "diffuse", "specular"}: its
+                index, n.l, the index of an object in its way or None, what its colour is divided by, and what it adds
+        """
+        needs = scene_needs(scene, settings)
+        native_scene = build_scene(scene, needs)
+        options = self._options(settings, needs)
+        result: dict[str, Any] = native_module().trace_pixel(
+            native_scene, settings.width, settings.height, x, y, **options
+        )
+        _restore_planes(result["rays"], needs)
+        return result
+
+    def _options(self, settings: Settings, needs: SceneNeeds) -> dict[str, Any]:
+        return {
+            "samples": settings.samples,
+            "corner": settings.pixel == "corner",
+            "blinn": settings.specular == "blinn",
+            "cutoff": settings.cutoff,
+            "max_depth": needs.max_depth,
+            "precision": self.precision,
+        }
+
+
+def native_module() -> ModuleType:
+    """The native tracer, or `RendererUnavailable`."""
+    try:
+        import native_tracer
+    except ImportError as error:
+        raise RendererUnavailable(
+            f"the native tracer is not built ({error}); `make` or `pip install .` builds it"
+        ) from None
+    return native_tracer
+
+
+def available_cores() -> int:
+    """Processor cores that this process may use."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1
+
+
+# ---- From our scene to the tracer's ----------------------------------------------------------------------------------
+
+
+def build_scene(scene: Scene, needs: SceneNeeds) -> Any:
+    """The tracer's scene. Pigments and finishes that no object uses are left out, so no texture is read in vain."""
+    native = native_module().Scene()
+    native.set_camera(scene.camera.eye, scene.camera.look_at, scene.camera.up, scene.camera.fovy)
+    native.set_ambient(scene.ambient)
+    native.set_background(needs.background)
+    if needs.lit:
+        for light in scene.lights:
+            native.add_light(light.position, light.color, light.attenuation)
+    pigments = {i: _add_pigment(native, scene.pigments[i]) for i in needs.pigments}
+    finishes = {}
+    for i in needs.finishes:
+        f = scene.finishes[i]
+        finishes[i] = native.add_finish(f.ka, f.kd, f.ks, f.alpha, f.kr, f.kt, needs.etas[i])
+    for o, planes in zip(scene.objects, needs.planes, strict=True):
+        _add_object(native, o, planes, pigments[o.pigment], finishes[o.finish])
+    return native
+
+
+def _add_pigment(native: Any, pigment: Pigment) -> int:
+    if isinstance(pigment, Solid):
+        index = native.add_solid(pigment.color)
+    elif isinstance(pigment, Checker):
+        index = native.add_checker(pigment.first, pigment.second, pigment.size)
+    else:
+        # The image library takes a while to import, and few scenes have textures.
+        from converter.images.texture import read_texture
+
+        texture = read_texture(pigment.file)
+        index = native.add_texmap(texture.width, texture.height, texture.texels, pigment.p0, pigment.p1)
+    return int(index)
+
+
+def _add_object(native: Any, o: Object, planes: tuple[int, ...], pigment: int, finish: int) -> None:
+    if isinstance(o.shape, Sphere):
+        native.add_sphere(pigment, finish, o.shape.center, o.shape.radius)
+    else:
+        # Without a volume, which no scene file may be, a body has no planes with a face.
+        kept = [o.shape.planes[k] for k in planes] or o.shape.planes
+        native.add_polyhedron(pigment, finish, kept)
+
+
+def _restore_planes(rays: list[dict[str, Any]], needs: SceneNeeds) -> None:
+    """Turn the tracer's plane numbers, which skip the planes that have no face, into the scene's."""
+    pending = list(rays)
+    while pending:
+        ray = pending.pop()
+        pending.extend(ray["children"])
+        hit = ray["hit"]
+        if hit is not None and hit["plane"] is not None and needs.planes[hit["object"]]:
+            hit["plane"] = needs.planes[hit["object"]][hit["plane"]]

@@ -1,0 +1,143 @@
+"""Scene descriptions into a folder that Mitsuba loads: scene.xml, and meshes, textures and exact surfaces beside it."""
+
+import math
+from pathlib import Path
+from typing import Any
+from xml.etree import ElementTree
+
+from converter.scene.model import Scene
+from converter.scene.settings import Settings
+from converter.to_mitsuba.scene import scene_description
+
+ELEMENTS = {
+    "whitted": "integrator",
+    "pinhole": "sensor",
+    "hdrfilm": "film",
+    "box": "rfilter",
+    "stratified": "sampler",
+    "srgb": "texture",
+    "solid_checker": "texture",
+    "projected_bitmap": "texture",
+    "phong": "bsdf",
+    "attenuated_point": "emitter",
+    "sphere": "shape",
+    "ply": "shape",
+}
+"""The kind of each plugin that descriptions name, as scene files mark it."""
+
+README = """\
+A Mitsuba 3 scene, written by `whitted convert`. Its plugins come with the Python package `whitted`. To render it:
+python -c "import mitsuba_plugins as p, mitsuba as mi; p.set_variant(); \\
+mi.util.write_bitmap('out.exr', mi.render(mi.load_file('scene.xml')))"
+"""
+
+
+class ExportError(Exception):
+    """A scene cannot be written to a folder; the message says why."""
+
+
+def export_scene(scene: Scene, settings: Settings, folder: Path) -> list[Path]:
+    """Write `scene`, drawn with `settings`, for Mitsuba, and return the files written, scene.xml first.
+
+    Raises:
+        ExportError: the folder holds something that this function did not write.
+        TextureError, PolyhedronError, OSError: as `scene_description` and the file system have it.
+    """
+    description = scene_description(scene, settings)
+    _check_folder(folder)
+    (folder / "meshes").mkdir(parents=True, exist_ok=True)
+    (folder / "textures").mkdir(exist_ok=True)
+    files = [folder / "scene.xml"]
+    root = ElementTree.Element("scene", version="3.0.0")
+    for name, element in description.items():
+        if isinstance(element, dict):
+            element, written = _with_files(name, element, folder)
+            files.extend(written)
+        if name != "type":
+            _append(root, name, element)
+    ElementTree.indent(root)
+    ElementTree.ElementTree(root).write(files[0], encoding="utf-8", xml_declaration=True)
+    files.append(folder / "README.txt")
+    files[-1].write_text(README, encoding="utf-8")
+    for subfolder in (folder / "meshes", folder / "textures"):
+        if not any(subfolder.iterdir()):
+            subfolder.rmdir()
+    return files
+
+
+def _check_folder(folder: Path) -> None:
+    """A folder that is new, empty, or holds an earlier export will do; that one's files are removed."""
+    if not folder.exists():
+        return
+    if not folder.is_dir():
+        raise ExportError(f"{folder} is a file: expected a folder to write the scene to")
+    ours = [*folder.glob("meshes/object_*.ply"), *folder.glob("textures/pigment_*.exr")]
+    ours += [folder / name for name in ("scene.xml", "geometry.json", "README.txt") if (folder / name).exists()]
+    others = [path for path in folder.rglob("*") if path.is_file() and path not in ours]
+    readme = folder / "README.txt"
+    if others or (ours and not (readme.exists() and readme.read_text(encoding="utf-8") == README)):
+        raise ExportError(f"{folder} holds files that are not of an exported scene: name a new or empty folder")
+    for path in ours:
+        path.unlink()
+
+
+def _with_files(name: str, element: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Path]]:
+    """An element with what only memory can hold in a file."""
+    rest = {key: value for key, value in element.items() if key not in ("mesh", "data", "geometry")}
+    if "mesh" in element:
+        from converter.to_mitsuba.polyhedra import write_ply
+
+        path = folder / "meshes" / f"{name}.ply"
+        write_ply(element["mesh"], path)
+        return rest | {"type": "ply", "filename": f"meshes/{name}.ply", "face_normals": True}, [path]
+    if "data" in element:
+        from converter.images.write import write_image
+
+        path = folder / "textures" / f"{name}.exr"
+        image = element["data"]
+        write_image(path, image.texels, image.width, image.height)
+        return rest | {"filename": f"textures/{name}.exr"}, [path]
+    if "geometry" in element:
+        path = folder / "geometry.json"
+        path.write_text(element["geometry"], encoding="utf-8")
+        return rest | {"filename": "geometry.json"}, [path]
+    return rest, []
+
+
+def _append(parent: ElementTree.Element, name: str, value: Any) -> None:
+    """Add one property or plugin to an XML element."""
+    if isinstance(value, dict):
+        _append_object(parent, name, value)
+    elif isinstance(value, bool):
+        ElementTree.SubElement(parent, "boolean", name=name, value=str(value).lower())
+    elif isinstance(value, int):
+        ElementTree.SubElement(parent, "integer", name=name, value=str(value))
+    elif isinstance(value, float):
+        ElementTree.SubElement(parent, "float", name=name, value=_number(value))
+    elif isinstance(value, str):
+        ElementTree.SubElement(parent, "string", name=name, value=value)
+    else:
+        tag = "point" if name == "center" else "vector"
+        ElementTree.SubElement(parent, tag, name=name, value=", ".join(map(_number, value)))
+
+
+def _append_object(parent: ElementTree.Element, name: str, value: dict[str, Any]) -> None:
+    kind = value["type"]
+    if kind == "rgb":
+        ElementTree.SubElement(parent, "rgb", name=name, value=", ".join(map(_number, value["value"])))
+        return
+    if kind == "ref":
+        ElementTree.SubElement(parent, "ref", name=name, id=value["id"])
+        return
+    attributes = {"type": kind, "id": name} if parent.tag == "scene" else {"type": kind, "name": name}
+    child = ElementTree.SubElement(parent, ELEMENTS[kind], attributes)
+    for key, inner in value.items():
+        if key != "type":
+            _append(child, key, inner)
+
+
+def _number(value: float) -> str:
+    """The shortest digits that read back as the same double."""
+    if not math.isfinite(value):
+        raise ExportError(f"{value} cannot be written to a scene file")
+    return repr(float(value))

@@ -1,0 +1,59 @@
+"""Shared by all tests: Mitsuba, started once, and small scenes."""
+
+import pytest
+
+from converter.scene.model import Camera, Checker, Finish, Light, Object, Polyhedron, Scene, Solid, Sphere
+
+
+@pytest.fixture(scope="session")
+def mi():
+    """Mitsuba in the LLVM variant with our plugins."""
+    import mitsuba_plugins
+
+    mitsuba_plugins.set_variant("llvm_ad_rgb")
+    import mitsuba
+
+    return mitsuba
+
+
+@pytest.fixture
+def small_scene() -> Scene:
+    """A mirror ball, a glass ball and a matte block on a checkered floor under two lights."""
+    return Scene(
+        camera=Camera((0.0, 3.0, -9.0), (0.0, 0.9, 0.0), (0.0, 1.0, 0.0), 35.0),
+        ambient=(0.7, 0.8, 1.0),
+        lights=(
+            Light((4.0, 8.0, -6.0), (0.8, 0.8, 0.7), (1.0, 0.0, 0.0)),
+            Light((-6.0, 5.0, -3.0), (0.5, 0.4, 0.4), (0.5, 0.05, 0.003)),
+        ),
+        pigments=(
+            Checker((0.2, 0.3, 0.6), (0.9, 0.9, 0.8), 0.7),
+            Solid((0.9, 0.3, 0.2)),
+            Solid((1.0, 1.0, 1.0)),
+        ),
+        finishes=(
+            Finish(0.3, 0.6, 0.0, 1.0, 0.1, 0.0, 0.0),
+            Finish(0.2, 0.6, 0.4, 60.0, 0.0, 0.0, 0.0),
+            Finish(0.05, 0.05, 0.5, 400.0, 0.8, 0.0, 0.0),
+            Finish(0.0, 0.05, 0.4, 200.0, 0.15, 0.8, 1.5),
+        ),
+        objects=(
+            Object(0, 0, Polyhedron(((0.0, 1.0, 0.0, 0.01),))),
+            Object(2, 2, Sphere((-1.6, 1.1, 0.6), 1.1)),
+            Object(2, 3, Sphere((0.9, 0.9, -0.9), 0.85)),
+            Object(
+                1,
+                1,
+                Polyhedron(
+                    (
+                        (1.0, 0.0, 0.3, -2.9),
+                        (-1.0, 0.0, -0.3, 1.6),
+                        (0.0, 1.0, 0.0, -1.4),
+                        (0.0, -2.0, 0.0, 0.04),
+                        (-0.3, 0.0, 1.0, -2.0),
+                        (0.3, 0.0, -1.0, 0.7),
+                    )
+                ),
+            ),
+        ),
+    )

@@ -1,0 +1,107 @@
+"""Hypothesis strategies for whole scenes, every one of which the format allows."""
+
+from collections.abc import Sequence
+from math import hypot
+from pathlib import Path
+
+from hypothesis import strategies as st
+
+from converter.scene.model import (
+    Camera,
+    Checker,
+    Finish,
+    Light,
+    Object,
+    Pigment,
+    Plane,
+    Polyhedron,
+    Scene,
+    Shape,
+    Solid,
+    Sphere,
+    Texmap,
+    Vector,
+)
+
+coordinates = st.floats(-1000, 1000)
+portions = st.floats(0, 1)
+vectors = st.tuples(coordinates, coordinates, coordinates)
+colors = st.tuples(portions, portions, portions)
+directions = st.tuples(*[st.integers(-9, 9).map(float)] * 3).filter(any)
+"""Vectors of lengths from 1 to 16, none nearly zero."""
+
+
+def _crossed(a: Vector, b: Vector) -> float:
+    return hypot(a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+@st.composite
+def cameras(draw: st.DrawFn) -> Camera:
+    """Cameras that look somewhere, with an up vector that is not parallel to that."""
+    eye = draw(vectors)
+    view = draw(directions)
+    up = draw(directions.filter(lambda up: _crossed(view, up) > 0.1))
+    return Camera(eye, (eye[0] + view[0], eye[1] + view[1], eye[2] + view[2]), up, draw(st.floats(1, 170)))
+
+
+@st.composite
+def lights(draw: st.DrawFn) -> Light:
+    """Lights that get no brighter with the distance."""
+    attenuation = draw(st.tuples(portions, portions, portions).filter(any))
+    return Light(draw(vectors), draw(colors), attenuation)
+
+
+def pigments(textures: Sequence[Path] = ()) -> st.SearchStrategy[Pigment]:
+    """Pigments; texmaps only of the given files."""
+    kinds: list[st.SearchStrategy[Pigment]] = [
+        st.builds(Solid, colors),
+        st.builds(Checker, colors, colors, st.floats(0.01, 100)),
+    ]
+    if textures:
+        four = st.tuples(*[st.floats(-10, 10)] * 4)
+        kinds.append(st.builds(Texmap, st.sampled_from(list(textures)), four, four))
+    return st.one_of(kinds)
+
+
+@st.composite
+def finishes(draw: st.DrawFn) -> Finish:
+    """Finishes, some of which reflect, some of which transmit; `ior` is good in either reading."""
+    ka, kd, ks = draw(colors)
+    kr = draw(st.one_of(st.just(0.0), portions))
+    kt = draw(st.one_of(st.just(0.0), portions))
+    ior = draw(st.floats(0.3, 3)) if kt > 0 else draw(st.one_of(st.just(0.0), st.floats(0.3, 3)))
+    return Finish(ka, kd, ks, draw(st.floats(0, 2000)), kr, kt, ior)
+
+
+@st.composite
+def polyhedra(draw: st.DrawFn, most_planes: int = 8) -> Polyhedron:
+    """Polyhedra that hold at least a small ball, many of them without bounds."""
+    center = draw(vectors)
+    planes: list[Plane] = []
+    for _ in range(draw(st.integers(1, most_planes))):
+        a, b, c = draw(directions)
+        distance = draw(st.floats(0.1, 100)) * hypot(a, b, c)
+        planes.append((a, b, c, -(a * center[0] + b * center[1] + c * center[2]) - distance))
+    return Polyhedron(tuple(planes))
+
+
+def shapes() -> st.SearchStrategy[Shape]:
+    """Spheres and polyhedra."""
+    return st.one_of(st.builds(Sphere, vectors, st.floats(0.01, 1000)), polyhedra())
+
+
+@st.composite
+def scenes(draw: st.DrawFn, textures: Sequence[Path] = (), file: Path | None = None, most_objects: int = 6) -> Scene:
+    """Whole scenes; `textures` are the files that texmaps may name, `file` the scene's own."""
+    palette = draw(st.lists(pigments(textures), min_size=1, max_size=4))
+    surfaces = draw(st.lists(finishes(), min_size=1, max_size=4))
+    objects = st.builds(Object, st.integers(0, len(palette) - 1), st.integers(0, len(surfaces) - 1), shapes())
+    return Scene(
+        camera=draw(cameras()),
+        ambient=draw(colors),
+        lights=tuple(draw(st.lists(lights(), max_size=3))),
+        pigments=tuple(palette),
+        finishes=tuple(surfaces),
+        objects=tuple(draw(st.lists(objects, max_size=most_objects))),
+        file=file,
+    )

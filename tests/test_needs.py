@@ -1,0 +1,186 @@
+"""What a scene needs, what is told of it, and which `ior` is which."""
+
+from dataclasses import replace
+from pathlib import Path
+
+import pytest
+from hypothesis import given
+from hypothesis import settings as hypothesis_settings
+from hypothesis import strategies as st
+from strategies import scenes
+
+from converter.scene.model import Camera, Finish, Light, Object, Scene, Solid, Sphere
+from converter.scene.needs import MAX_DEPTH, MAX_DEPTH_BRANCHING, eta, is_index, scene_needs
+from converter.scene.notices import scene_notices
+from converter.scene.parser import parse_scene
+from converter.scene.settings import IorReading, Settings
+from converter.scene.writer import write_scene
+
+MATTE = Finish(0.2, 0.8, 0, 1, 0, 0, 0)
+SHINY = Finish(0.2, 0.5, 0.5, 50, 0, 0, 0)
+MIRROR = Finish(0.1, 0, 0, 1, 0.7, 0, 0)
+GLASS = Finish(0, 0, 0, 1, 0, 0.9, 1.5)
+BOTH = Finish(0, 0, 0, 1, 0.1, 0.8, 0.67)
+AMBIENT = Finish(1, 0, 0, 1, 0, 0, 0)
+LAMP = Light((0, 10, 0), (1, 1, 1), (1, 0, 0))
+
+
+def scene_of(*finishes: Finish, unused: tuple[Finish, ...] = (), lights: tuple[Light, ...] = (LAMP,)) -> Scene:
+    """A ball for each of `finishes`; `unused` ones stand before them in the scene's list."""
+    first = len(unused)
+    return Scene(
+        camera=Camera((0, 0, -10), (0, 0, 0), (0, 1, 0), 40),
+        ambient=(0.1, 0.2, 0.3),
+        lights=lights,
+        pigments=(Solid((1, 0, 0)), Solid((0, 1, 0))),
+        finishes=(*unused, *finishes),
+        objects=tuple(Object(1, first + k, Sphere((3 * k, 0, 0), 1)) for k in range(len(finishes))),
+    )
+
+
+def test_only_what_is_referred_to_is_needed() -> None:
+    needs = scene_needs(scene_of(MATTE, SHINY, unused=(GLASS, MIRROR)), Settings())
+    assert needs.pigments == (1,)
+    assert needs.finishes == (2, 3)
+    assert not (needs.reflects or needs.refracts or needs.branches or needs.bounces)
+    assert needs.max_depth == 0
+    assert len(needs.etas) == 4
+
+
+@pytest.mark.parametrize(
+    ("finishes", "reflects", "refracts", "branches"),
+    [
+        ((MATTE,), False, False, False),
+        ((MIRROR,), True, False, False),
+        ((GLASS,), False, True, False),
+        ((MIRROR, GLASS), True, True, False),
+        ((BOTH,), True, True, True),
+    ],
+)
+def test_bounces(finishes: tuple[Finish, ...], reflects: bool, refracts: bool, branches: bool) -> None:
+    needs = scene_needs(scene_of(*finishes), Settings())
+    assert (needs.reflects, needs.refracts, needs.branches) == (reflects, refracts, branches)
+    assert needs.bounces == (reflects or refracts)
+
+
+def test_a_ray_below_the_cut_off_is_no_need() -> None:
+    faint = replace(MIRROR, kr=0.01)
+    assert scene_needs(scene_of(faint), Settings()).reflects
+    needs = scene_needs(scene_of(faint), Settings(cutoff=0.02))
+    assert not needs.reflects
+    assert needs.max_depth == 0
+
+
+def test_no_depth_no_bounce() -> None:
+    needs = scene_needs(scene_of(BOTH), Settings(max_depth=0))
+    assert not (needs.reflects or needs.refracts or needs.branches or needs.bounces)
+
+
+@pytest.mark.parametrize(
+    ("finish", "lights", "lit", "glossy"),
+    [
+        (MATTE, (LAMP,), True, False),
+        (SHINY, (LAMP,), True, True),
+        (SHINY, (), False, False),
+        (AMBIENT, (LAMP,), False, False),
+        (GLASS, (LAMP,), False, False),
+    ],
+)
+def test_lighting(finish: Finish, lights: tuple[Light, ...], lit: bool, glossy: bool) -> None:
+    needs = scene_needs(scene_of(finish, lights=lights), Settings())
+    assert (needs.lit, needs.glossy) == (lit, glossy)
+
+
+@pytest.mark.parametrize(
+    ("finishes", "cutoff", "depth"),
+    [
+        ((MIRROR,), 1 / 512, 18),  # 0.7^18 < 1/512 < 0.7^17
+        ((replace(MIRROR, kr=0.5),), 1 / 512, 9),
+        ((replace(MIRROR, kr=0.5), MIRROR), 1 / 512, 18),
+        ((replace(MIRROR, kr=1.0),), 1 / 512, MAX_DEPTH),
+        ((replace(MIRROR, kr=0.999),), 1 / 512, MAX_DEPTH),
+        ((MIRROR,), 0, MAX_DEPTH),
+        ((BOTH,), 1 / 512, MAX_DEPTH_BRANCHING),
+        ((replace(BOTH, kr=0.1, kt=0.1),), 1 / 512, 3),
+        ((MATTE,), 1 / 512, 0),
+        ((MATTE,), 0, 0),
+    ],
+)
+def test_depth(finishes: tuple[Finish, ...], cutoff: float, depth: int) -> None:
+    assert scene_needs(scene_of(*finishes), Settings(cutoff=cutoff)).max_depth == depth
+
+
+def test_depth_can_be_set() -> None:
+    assert scene_needs(scene_of(MIRROR), Settings(max_depth=3)).max_depth == 3
+    assert scene_needs(scene_of(MATTE), Settings(max_depth=3)).max_depth == 0
+
+
+def test_background() -> None:
+    assert scene_needs(scene_of(MATTE), Settings()).background == (0.1, 0.2, 0.3)
+    assert scene_needs(scene_of(MATTE), Settings(background=(0, 0, 1))).background == (0, 0, 1)
+
+
+@pytest.mark.parametrize(
+    ("ior", "reading", "index"),
+    [
+        (1.5, "auto", True),
+        (1.0, "auto", False),
+        (0.67, "auto", False),
+        (1.5, "ratio", False),
+        (0.67, "ratio", False),
+        (1.5, "index", True),
+        (0.67, "index", True),
+    ],
+)
+def test_readings_of_ior(ior: float, reading: IorReading, index: bool) -> None:
+    finish = replace(GLASS, ior=ior)
+    assert is_index(finish, reading) == index
+    assert eta(finish, reading) == pytest.approx(1 / ior if index else ior)
+
+
+def test_ior_means_nothing_without_transmission() -> None:
+    for reading in ("auto", "ratio", "index"):
+        assert eta(replace(MIRROR, ior=0), reading) == 1
+
+
+@hypothesis_settings(max_examples=30, deadline=None)
+@given(scenes(), st.sampled_from(["auto", "ratio", "index"]))
+def test_needs_agree_with_the_scene(scene: Scene, reading: IorReading) -> None:
+    needs = scene_needs(scene, Settings(ior=reading))
+    assert set(needs.pigments) == {o.pigment for o in scene.objects}
+    assert set(needs.finishes) == {o.finish for o in scene.objects}
+    assert len(needs.etas) == len(scene.finishes)
+    assert all(e > 0 for e in needs.etas)
+    assert needs.bounces == (needs.reflects or needs.refracts)
+    assert not needs.branches or (needs.reflects and needs.refracts)
+
+
+# ------------------------------------------------------------------------------------------------------------- notices
+
+
+def test_an_ior_above_1_is_told_with_its_place() -> None:
+    scene = parse_scene(write_scene(scene_of(MATTE, GLASS, BOTH)), Path("glass.in"))
+    (notice,) = scene_notices(scene, Settings())
+    line = write_scene(scene).splitlines().index("0 0 0 1 0 0.9 1.5") + 1
+    assert notice.startswith(f"glass.in:{line}: finish 1: ior 1.5 is above 1")
+    assert "--ior ratio" in notice
+
+
+def test_a_scene_made_by_a_program_has_notices_too() -> None:
+    (notice,) = scene_notices(scene_of(GLASS), Settings())
+    assert notice.startswith("scene: finish 0: ior 1.5 ")
+
+
+@pytest.mark.parametrize(
+    ("scene", "settings"),
+    [
+        (scene_of(GLASS), Settings(ior="ratio")),
+        (scene_of(GLASS), Settings(ior="index")),
+        (scene_of(BOTH), Settings()),
+        (scene_of(replace(GLASS, kt=0)), Settings()),
+        (scene_of(MATTE, unused=(GLASS,)), Settings()),
+    ],
+    ids=["ratio asked for", "index asked for", "a ratio", "nothing transmitted", "not used"],
+)
+def test_nothing_to_tell(scene: Scene, settings: Settings) -> None:
+    assert scene_notices(scene, settings) == []
