@@ -1,0 +1,84 @@
+"""Both renderers on every scene of the gallery: what one draws the other draws."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from converter.compare.metrics import compare_images
+from converter.renderers.mitsuba import MitsubaRenderer
+from converter.renderers.native import NativeRenderer
+from converter.scene.parser import load_scene
+from converter.scene.settings import Settings
+
+SCENES = sorted((Path(__file__).parent.parent / "scenes").glob("*.in"))
+SETTINGS = Settings(width=200, height=150)
+MOST_DISAGREEING_PIXELS = 3
+"""Of 30,000: a silhouette or a shadow's edge may run through a pixel's ray to within a rounding."""
+
+
+def agree(scene, settings, renderer, tmp_path):
+    """Compare a renderer's picture with the native tracer's, and leave both where a failure's message says."""
+    reference = np.asarray(NativeRenderer().render(scene, settings).pixels)
+    result = np.asarray(renderer.render(scene, settings).pixels)
+    difference = compare_images(reference, result)
+    for name, image in (("reference", reference), ("result", result), ("difference", np.abs(reference - result))):
+        np.save(tmp_path / f"{name}.npy", image)
+    assert difference.disagreeing <= MOST_DISAGREEING_PIXELS, f"{difference.largest}; pictures: {tmp_path}"
+
+
+@pytest.mark.parametrize("file", SCENES, ids=lambda file: file.stem)
+def test_default_method_agrees(mi, file, tmp_path):
+    agree(load_scene(file), SETTINGS, MitsubaRenderer("llvm_ad_rgb"), tmp_path)
+
+
+@pytest.mark.parametrize("name", ["figure1", "bubble", "solids", "endless", "room", "nested"])
+def test_meshes_agree(mi, name, tmp_path):
+    """The way through Embree, on scenes that are small enough for the default to go another."""
+    file = next(file for file in SCENES if file.stem == name)
+    agree(load_scene(file), SETTINGS, MitsubaRenderer("llvm_ad_rgb", "mesh"), tmp_path)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"pixel": "center"},
+        {"specular": "blinn"},
+        {"background": (0.1, 0.2, 2.0)},
+        {"samples": 4},
+        {"cutoff": 0.1},
+        {"max_depth": 1},
+        {"max_depth": 0},
+        {"ior": "ratio"},
+    ],
+    ids=str,
+)
+def test_every_setting_agrees(mi, small_scene, changes, tmp_path):
+    settings = Settings(**({"width": 120, "height": 90} | changes))
+    agree(small_scene, settings, MitsubaRenderer("llvm_ad_rgb"), tmp_path)
+
+
+def test_pictures_larger_than_one_band_agree(mi, small_scene, tmp_path):
+    agree(small_scene, Settings(width=700, height=500), MitsubaRenderer("llvm_ad_rgb"), tmp_path)
+
+
+@pytest.mark.parametrize("intersections", ["analytic", "mesh"])
+def test_pixel_trees_agree(mi, small_scene, intersections):
+    """Ray by ray: the same objects, planes and shadows, and the colours that the pictures have."""
+    settings = Settings(width=40, height=30)
+    renderer = MitsubaRenderer("llvm_ad_rgb", intersections)
+    picture = np.asarray(renderer.render(small_scene, settings).pixels)
+    for x, y in ((27, 18), (13, 15), (22, 12), (20, 29)):
+        native = NativeRenderer().trace_pixel(small_scene, settings, x, y)
+        mitsuba = renderer.trace_pixel(small_scene, settings, x, y)
+        assert mitsuba["color"] == pytest.approx(picture[y, x], abs=1e-5)
+        assert mitsuba["color"] == pytest.approx(native["color"], abs=1e-5)
+        assert [*map(_skeleton, mitsuba["rays"])] == [*map(_skeleton, native["rays"])]
+
+
+def _skeleton(ray):
+    """What of a ray and those below it has no digits."""
+    hit = ray["hit"]
+    met = hit and (hit["object"], hit["plane"], hit["entering"], hit["total_reflection"])
+    shadows = hit and [(light["light"], light["cosine"] > 0, light["shadowed_by"] is None) for light in hit["lights"]]
+    return ray["kind"], ray["depth"], met, shadows, ray["dropped"], [*map(_skeleton, ray["children"])]

@@ -1,0 +1,61 @@
+"""`whitted convert`: a folder that Mitsuba loads, whose picture is `whitted render`'s."""
+
+import numpy as np
+import pytest
+
+from converter.renderers.mitsuba import MitsubaRenderer
+from converter.scene.model import Texmap
+from converter.scene.settings import Settings
+from converter.to_mitsuba.export import ExportError, export_scene
+
+
+@pytest.fixture
+def textured(small_scene, tmp_path):
+    from dataclasses import replace
+
+    file = tmp_path / "steps.ppm"
+    file.write_bytes(b"P6 3 2 255\n" + bytes(range(0, 180, 10)))
+    pigments = (
+        *small_scene.pigments[:1],
+        Texmap(file, (0.7, 0.1, 0.0, 0.2), (0.0, 0.9, 0.3, 0.0)),
+        *small_scene.pigments[2:],
+    )
+    return replace(small_scene, pigments=pigments)
+
+
+@pytest.mark.parametrize("optimize", [True, False])
+def test_same_bits_as_render(mi, textured, tmp_path, optimize):
+    settings = Settings(width=160, height=120, samples=4)
+    files = export_scene(textured, settings, tmp_path / "out")
+    assert [file.name for file in files if not file.exists()] == []
+    exported = np.asarray(mi.render(mi.load_file(str(files[0]), optimize=optimize)))
+    rendered = MitsubaRenderer("llvm_ad_rgb").render(textured, settings)
+    assert np.array_equal(exported, rendered.pixels)
+
+
+def test_meshes_too(mi, textured, tmp_path):
+    """With the intersections through Embree, so that the PLY files are what is hit."""
+    settings = Settings(width=160, height=120)
+    files = export_scene(textured, settings, tmp_path / "out")
+    files[0].write_text(
+        files[0].read_text().replace('name="intersections" value="auto"', 'name="intersections" value="mesh"')
+    )
+    exported = np.asarray(mi.render(mi.load_file(str(files[0]))))
+    rendered = MitsubaRenderer("llvm_ad_rgb", "mesh").render(textured, settings)
+    assert np.array_equal(exported, rendered.pixels)
+
+
+def test_refuses_a_folder_with_other_files(small_scene, tmp_path):
+    (tmp_path / "thesis.tex").write_text("years of work")
+    with pytest.raises(ExportError, match="new or empty folder"):
+        export_scene(small_scene, Settings(), tmp_path)
+    assert [path.name for path in tmp_path.iterdir()] == ["thesis.tex"]
+
+
+def test_replaces_an_earlier_export(small_scene, textured, tmp_path):
+    folder = tmp_path / "out"
+    assert (folder / "textures") not in [file.parent for file in export_scene(small_scene, Settings(), folder)]
+    export_scene(textured, Settings(), folder)
+    files = export_scene(small_scene, Settings(), folder)
+    assert sorted(path for path in folder.rglob("*") if path.is_file()) == sorted(files)
+    assert not (folder / "textures").exists()

@@ -1,0 +1,233 @@
+"""Local colour: pigments, lights, highlights and shadows, against closed forms, in every precision."""
+
+import math
+from array import array
+
+import pytest
+from native_scenes import BLACK, CONSTANT, EPSILON, PRECISIONS, WHITE, add_finish, box, draw, look, new_scene, trace_ray
+
+import native_tracer
+
+pytestmark = pytest.mark.parametrize("precision", PRECISIONS)
+
+FLOOR = [(0.0, 1.0, 0.0, 0.0)]
+DOWN = (0.0, -1.0, 0.0)
+
+
+def floor_seen_at(point, pigment_of, finish, precision, lights=(), ambient=BLACK, objects=(), **options):
+    """The ray that comes down on the floor y <= 0 at (x, z) = `point`; `pigment_of(scene)` adds its pigment.
+
+    `objects` are functions of the scene, a pigment and a finish, called after the floor was added.
+    """
+    scene = new_scene(ambient)
+    pigment, finish = pigment_of(scene), add_finish(scene, **finish)
+    scene.add_polyhedron(pigment, finish, FLOOR)
+    for light in lights:
+        scene.add_light(*light)
+    for add_object in objects:
+        add_object(scene, pigment, finish)
+    x, z = point
+    return trace_ray(scene, (x, 1.0, z), DOWN, precision=precision, **options)
+
+
+def red(scene):
+    return scene.add_solid((0.5, 0.25, 0.125))
+
+
+def close(color, expected, precision, operations=24):
+    tolerance = operations * EPSILON[precision]
+    return all(abs(a - b) <= tolerance * max(1.0, abs(b)) for a, b in zip(color, expected, strict=True))
+
+
+# ---- Pigments --------------------------------------------------------------------------------------------------------
+
+
+def test_ambient_light_is_tinted_by_the_pigment(precision):
+    ray = floor_seen_at((0, 0), red, {"ka": 0.5}, precision, ambient=(1, 0.5, 0.25))
+    assert ray["local"] == (0.25, 0.0625, 0.015625)
+
+
+@pytest.mark.parametrize(
+    ("x", "z", "even"),
+    [(0.5, 0.5, True), (1.5, 0.5, False), (-0.5, 0.5, False), (-0.5, -0.5, True), (-1.5, 0.5, True), (2.5, -3.5, True)],
+)
+def test_checker_counts_cells_by_floor(precision, x, z, even):
+    # The floor stands at y = 1.5 sizes, in the cell with number 1.
+    scene = new_scene(WHITE)
+    checker = scene.add_checker((1, 0, 0), (0, 1, 0), 2)
+    scene.add_polyhedron(checker, add_finish(scene, ka=1), [(0, 1, 0, -3)])
+    ray = trace_ray(scene, (2 * x, 5, 2 * z), DOWN, precision=precision)
+    assert ray["local"] == ((0, 1, 0) if even else (1, 0, 0))
+
+
+@pytest.mark.parametrize("far", [3e9, 1e13, 1e17])
+def test_checker_and_texmap_survive_any_coordinate(precision, far):
+    # Twice the cell's number, no integer holds; the colour is one of the two, or one of the texels.
+    scene = new_scene(WHITE)
+    checker = scene.add_checker((1, 0, 0), (0, 1, 0), 1e-9)
+    texture = scene.add_texmap(3, 1, array("f", [1, 0, 0, 0, 1, 0, 0, 0, 1]), (1e10, 1, 1, 1), (1e10, -1e10, 1e10, 0))
+    finish = add_finish(scene, ka=1)
+    scene.add_sphere(checker, finish, (far, 0, 0), 1e-3 * far)
+    scene.add_sphere(texture, finish, (-far, 0, 0), 1e-3 * far)
+    for sign in (1, -1):
+        color = trace_ray(scene, BLACK, (sign, 1e-4, 2e-4), precision=precision)["local"]
+        assert sorted(color) == [0, 0, 1]
+
+
+def texel_scene(p0, p1, width=4, height=2):
+    """A floor whose texel in column c and row r has the colour (c, r, 0)."""
+    texels = array("f", [v for r in range(height) for c in range(width) for v in (c, r, 0)])
+    scene = new_scene(WHITE)
+    pigment = scene.add_texmap(width, height, texels, p0, p1)
+    scene.add_polyhedron(pigment, add_finish(scene, ka=1), FLOOR)
+    return scene
+
+
+@pytest.mark.parametrize(
+    ("s", "column"),
+    [(0.1, 0), (0.3, 1), (0.99, 3), (1.01, 0), (2.6, 2), (-0.1, 0), (-0.2, 0), (-0.3, 3), (-0.99, 1), (-1.3, 3)],
+)
+def test_texmap_truncates_toward_zero_and_wraps(precision, s, column):
+    # trunc(s W) mod W, plus W if negative: the column on both sides of s = 0 is the first.
+    scene = texel_scene((1, 0, 0, 0), (0, 0, 1, 0))
+    assert trace_ray(scene, (s, 1, 0.1), DOWN, precision=precision)["local"] == (column, 0, 0)
+
+
+def test_texmap_rows_run_down_from_the_top(precision):
+    scene = texel_scene((0, 0, 0, 0.8), (0, 0, 1, 0.25))
+    rows = [trace_ray(scene, (0, 1, z), DOWN, precision=precision)["local"][1] for z in (0, 0.3, 0.8, -0.3, -0.8)]
+    assert rows == [0, 1, 0, 0, 1]
+
+
+# ---- Lights ----------------------------------------------------------------------------------------------------------
+
+
+def test_floor_lit_by_an_attenuated_light(precision):
+    # A 3-4-5 triangle: distance 5, cosine 4/5.
+    light = ((3, 4, 0), (1, 0.5, 2), (0.5, 0.25, 0.125))
+    ray = floor_seen_at((0, 0), red, {"kd": 0.5}, precision, [light])
+    factor = 0.5 * 0.8 / (0.5 + 0.25 * 5 + 0.125 * 25)
+    assert close(ray["local"], (factor * 0.5, factor * 0.5 * 0.25, factor * 2 * 0.125), precision)
+    (contribution,) = ray["hit"]["lights"]
+    assert close((contribution["cosine"], contribution["attenuation"]), (0.8, 4.875), precision)
+    assert contribution["shadowed_by"] is None
+
+
+def test_lights_add_up_and_are_not_clamped(precision):
+    lights = [((0, 2, 0), (3, 3, 3), CONSTANT), ((0, 4, 0), (5, 5, 5), CONSTANT)]
+    ray = floor_seen_at((0, 0), red, {"ka": 1, "kd": 1}, precision, lights, ambient=WHITE)
+    assert close(ray["local"], (4.5, 2.25, 1.125), precision)
+
+
+def test_light_behind_the_surface_adds_nothing(precision):
+    ray = floor_seen_at((0, 0), red, {"kd": 1, "ks": 1, "alpha": 0}, precision, [((0, -3, 0), WHITE, CONSTANT)])
+    assert ray["local"] == BLACK
+
+
+def test_phong_highlight_is_white_and_uses_the_mirror_direction(precision):
+    # Seen from straight above, r.v is the cosine of the light's direction.
+    light = ((3, 4, 0), (1, 0.5, 0.25), CONSTANT)
+    ray = floor_seen_at((0, 0), red, {"ks": 0.5, "alpha": 3}, precision, [light])
+    shine = 0.5 * 0.8**3
+    assert close(ray["local"], (shine, shine * 0.5, shine * 0.25), precision)
+
+
+def test_blinn_highlight_uses_the_half_vector(precision):
+    light = ((3, 4, 0), WHITE, CONSTANT)
+    ray = floor_seen_at((0, 0), red, {"ks": 0.5, "alpha": 3}, precision, [light], blinn=True)
+    # Half the angle whose cosine is 4/5.
+    shine = 0.5 * math.sqrt((1 + 0.8) / 2) ** 3
+    assert close(ray["local"], (shine, shine, shine), precision)
+
+
+def test_highlight_away_from_the_mirror_direction(precision):
+    # The viewer stands where r.v < 0: nothing, unless alpha is 0, when even nothing to the power of 0 is 1.
+    scene = new_scene()
+    light = ((1, 0.5, 0), WHITE, CONSTANT)
+    for alpha, expected in ((1, 0), (0, 1), (0.5, 0)):
+        scene = new_scene()
+        scene.add_polyhedron(scene.add_solid(WHITE), add_finish(scene, ks=1, alpha=alpha), FLOOR)
+        scene.add_light(*light)
+        ray = trace_ray(scene, (1, 0.5, 0), (-1, -0.5, 0), precision=precision)
+        assert ray["local"] == (expected,) * 3
+
+
+@pytest.mark.parametrize("finish", [{"ka": 1}, {"kr": 1}, {"kt": 1}])
+def test_no_shadow_rays_where_nothing_answers_them(precision, finish):
+    scene = new_scene()
+    scene.add_polyhedron(scene.add_solid(WHITE), add_finish(scene, **finish), FLOOR)
+    scene.add_light((0, 5, 0), WHITE, CONSTANT)
+    look(scene, (0, 1, 0), DOWN)
+    assert draw(scene, precision=precision).statistics["shadow"] == 0
+
+
+# ---- Shadows ---------------------------------------------------------------------------------------------------------
+
+ABOVE = ((0, 10, 0), WHITE, CONSTANT)
+
+
+def a_ball(center, radius):
+    return lambda scene, pigment, finish: scene.add_sphere(pigment, finish, center, radius)
+
+
+def a_pane_of_glass(scene, pigment, _):
+    scene.add_polyhedron(pigment, add_finish(scene, kt=1), box((-5, 5, -5), (5, 5.5, 5)))
+
+
+@pytest.mark.parametrize(
+    ("blocker", "blocked"),
+    [
+        (a_ball((0, 5, 0), 1), True),
+        (a_ball((1.01, 5, 0), 1), False),
+        (a_ball((0, 12, 0), 1), False),  # behind the light
+        (a_ball((0, 9, 0), 3), True),  # the light stands within
+        (a_pane_of_glass, True),
+    ],
+)
+def test_whatever_stands_before_the_light_blocks_it(precision, blocker, blocked):
+    ray = floor_seen_at((0, 0), red, {"kd": 1}, precision, [ABOVE], objects=[blocker])
+    assert ray["hit"]["lights"][0]["shadowed_by"] == (1 if blocked else None)
+    assert (ray["local"] == BLACK) == blocked
+
+
+@pytest.mark.parametrize(
+    "add_object",
+    [
+        lambda scene, pigment, finish: scene.add_sphere(pigment, finish, (0, 0, 0), 2),
+        lambda scene, pigment, finish: scene.add_polyhedron(pigment, finish, box((-2, -2, -2), (2, 2, 2))),
+    ],
+    ids=["sphere", "box"],
+)
+@pytest.mark.parametrize(("light", "blocker"), [((0, 1.5, 0), None), ((0, 30, 0), 0)])
+def test_a_body_seen_from_within_is_shaded_by_its_own_far_side(precision, add_object, light, blocker):
+    scene = new_scene()
+    add_object(scene, scene.add_solid(WHITE), add_finish(scene, kd=1))
+    scene.add_light(light, WHITE, CONSTANT)
+    ray = trace_ray(scene, (0, -1, 0), DOWN, precision=precision)
+    assert not ray["hit"]["entering"] and ray["hit"]["normal"] == DOWN
+    (contribution,) = ray["hit"]["lights"]
+    assert contribution["cosine"] == 1 and contribution["shadowed_by"] == blocker
+
+
+def test_light_outside_a_sphere_seen_from_within_is_behind_its_near_side(precision):
+    scene = new_scene()
+    scene.add_sphere(scene.add_solid(WHITE), add_finish(scene, kd=1), BLACK, 2)
+    scene.add_light((0, -30, 0), WHITE, CONSTANT)
+    ray = trace_ray(scene, BLACK, DOWN, precision=precision)
+    assert ray["hit"]["lights"][0]["cosine"] == -1 and ray["local"] == BLACK
+
+
+def test_a_light_on_the_surface_is_no_accident(precision):
+    ray = floor_seen_at((0, 0), red, {"kd": 1, "ks": 1}, precision, [(BLACK, WHITE, (0, 0, 1))])
+    assert ray["local"] == BLACK
+
+
+def test_shadow_rays_are_counted(precision):
+    scene = new_scene()
+    scene.add_polyhedron(scene.add_solid(WHITE), add_finish(scene, kd=1), FLOOR)
+    for light in [(0, 5, 0), (3, 4, 0), (0, -1, 0)]:
+        scene.add_light(light, WHITE, CONSTANT)
+    look(scene, (0, 1, 0), DOWN)
+    image = native_tracer.Image(10, 10)
+    native_tracer.render(scene, image, cutoff=0, max_depth=0, precision=precision)
+    assert image.statistics["shadow"] == 200

@@ -1,0 +1,257 @@
+"""The Mitsuba plugins one by one, each against a closed form."""
+
+import math
+
+import numpy as np
+import pytest
+
+from converter.scene.settings import Settings
+
+
+@pytest.fixture
+def phong(mi):
+    def make(**coefficients):
+        return mi.load_dict({"type": "phong", "pigment": {"type": "rgb", "value": [0.5, 0.25, 1.0]}, **coefficients})
+
+    return make
+
+
+def vector(mi, numbers):
+    return mi.Vector3f(*(float(number) for number in numbers))
+
+
+def interaction(mi, wi):
+    si = mi.SurfaceInteraction3f()
+    si.wi = vector(mi, wi)
+    si.p = mi.Point3f(0)
+    si.sh_frame = mi.Frame3f(mi.Normal3f(0, 0, 1))
+    si.n = mi.Normal3f(0, 0, 1)
+    return si
+
+
+# ---- Textures
+
+
+def test_checker_counts_cubes_on_both_sides_of_the_origin(mi):
+    texture = mi.load_dict(
+        {
+            "type": "solid_checker",
+            "first": {"type": "rgb", "value": [1.0, 0.0, 0.0]},
+            "second": {"type": "rgb", "value": [0.0, 2.0, 0.0]},
+            "size": 0.5,
+        }
+    )
+    x = np.array([0.1, 0.6, -0.1, -0.6, 1e12, 1e12 + 0.5])
+    color = np.asarray(texture.color_at(mi.Point3d(mi.Float64(x), 0.1, 0.1)))
+    assert color[0].tolist() == [1, 0, 0, 1, 1, 0]
+    assert color[1].tolist() == [0, 2, 2, 0, 0, 2]
+
+
+def test_checker_boundary_is_exact_in_double_precision(mi):
+    texture = mi.load_dict(
+        {
+            "type": "solid_checker",
+            "first": {"type": "rgb", "value": [1.0, 0.0, 0.0]},
+            "second": {"type": "rgb", "value": [0.0, 1.0, 0.0]},
+            "size": 0.1,
+        }
+    )
+    # In double precision -0.3 / 0.1 lies above -3, in single precision on it or below.
+    y = -0.3
+    expected = 1 if math.floor(y / 0.1) % 2 == 0 else 0
+    assert texture.color_at(mi.Point3d(0.05, y, 0.05)).x[0] == expected
+
+
+def test_projected_bitmap_truncates_and_repeats(mi):
+    texels = np.arange(12, dtype=np.float32).reshape(2, 2, 3)
+    texture = mi.load_dict(
+        {"type": "projected_bitmap", "data": mi.TensorXf(texels), "to_s": "1 0 0 0", "to_r": "0 1 0 0"}
+    )
+
+    def texel(s, r):
+        return int(texture.color_at(mi.Point3d(s, r, 0)).x[0]) // 3
+
+    assert [texel(s, 0.0) for s in (0.0, 0.4, 0.5, 1.0, 1.6, -0.4, -0.5, -0.6, -1.1)] == [0, 0, 1, 0, 1, 0, 1, 1, 0]
+    assert [texel(0.0, r) for r in (0.0, 0.4, 0.5, -0.4, -0.6)] == [0, 0, 2, 0, 2]
+    assert texel(math.nan, 1e300) in (0, 1, 2, 3)
+
+
+# ---- The BSDF
+
+
+@pytest.mark.parametrize("side", [1, -1])
+def test_phong_is_the_course_formula(mi, phong, side):
+    bsdf = phong(kd=0.4, ks=0.3, alpha=20.0)
+    wi, wo = np.array([0.6, 0.0, 0.8]), np.array([-0.5, 0.1, math.sqrt(1 - 0.26)])
+    flip = np.array([1, 1, side])
+    value = bsdf.eval(mi.BSDFContext(), interaction(mi, wi * flip), vector(mi, wo * flip))
+    mirror = np.array([-wi[0], -wi[1], wi[2]])
+    expected = 0.4 * np.array([0.5, 0.25, 1.0]) * wo[2] + 0.3 * (mirror @ wo) ** 20
+    assert np.allclose(np.asarray(value).ravel() * math.pi, expected, rtol=1e-5)
+    assert not np.asarray(bsdf.eval(mi.BSDFContext(), interaction(mi, wi * flip), vector(mi, -wo * flip))).any()
+
+
+def test_phong_blinn_uses_the_half_vector(mi, phong):
+    bsdf = phong(ks=1.0, alpha=50.0, blinn=True)
+    wi, wo = np.array([0.6, 0.0, 0.8]), np.array([-0.5, 0.1, math.sqrt(1 - 0.26)])
+    half = (wi + wo) / np.linalg.norm(wi + wo)
+    value = bsdf.eval(mi.BSDFContext(), interaction(mi, wi), vector(mi, wo))
+    assert np.asarray(value).ravel()[0] * math.pi == pytest.approx(half[2] ** 50, rel=1e-5)
+
+
+def test_phong_alpha_zero_is_a_full_highlight(mi, phong):
+    bsdf = phong(ks=0.25, alpha=0.0)
+    value = bsdf.eval(mi.BSDFContext(), interaction(mi, (0.0, 0.0, 1.0)), mi.Vector3f(0.8, 0, 0.6))
+    grazing = bsdf.eval(mi.BSDFContext(), interaction(mi, (0.8, 0.0, 0.6)), mi.Vector3f(0.8, 0, 0.6))
+    assert np.asarray(value).ravel()[0] * math.pi == pytest.approx(0.25)
+    assert np.asarray(grazing).ravel()[0] * math.pi == pytest.approx(0.25), "0 ** 0 is 1"
+
+
+@pytest.mark.parametrize(
+    "coefficients", [{"kd": 1.0}, {"ks": 1.0, "alpha": 30.0}, {"ks": 1.0, "alpha": 30.0, "blinn": True}]
+)
+def test_phong_samples_what_it_evaluates(mi, phong, coefficients):
+    bsdf = phong(**coefficients)
+    n = 400_000
+    rng = mi.PCG32(size=n)
+    u = lambda: rng.next_float32()  # noqa: E731
+    si = interaction(mi, (0.48, 0.36, 0.8))
+    bs, weight = bsdf.sample(mi.BSDFContext(), si, u(), mi.Point2f(u(), u()))
+    sampled = np.asarray(weight).mean(axis=1)
+    wo = mi.warp.square_to_uniform_hemisphere(mi.Point2f(u(), u()))
+    integral = 2 * math.pi * np.asarray(bsdf.eval(mi.BSDFContext(), si, wo)).mean(axis=1)
+    assert np.allclose(sampled, integral, rtol=0.03)
+    pdf = 2 * math.pi * np.asarray(bsdf.pdf(mi.BSDFContext(), si, wo)).mean()
+    above = (np.asarray(bs.wo)[2] > 0).mean()
+    assert pdf == pytest.approx(above, rel=0.03)
+
+
+def test_phong_mirror_and_refracted_lobes(mi, phong):
+    bsdf = phong(kr=0.25, kt=0.75, eta=1 / 1.5)
+    wi = (0.6, 0.0, 0.8)
+    mirrored, weight = bsdf.sample(mi.BSDFContext(), interaction(mi, wi), 0.1, mi.Point2f(0.5))
+    assert np.allclose(np.asarray(mirrored.wo).ravel(), [-0.6, 0, 0.8], atol=1e-6)
+    refracted, _ = bsdf.sample(mi.BSDFContext(), interaction(mi, wi), 0.9, mi.Point2f(0.5))
+    sine = 0.6 / 1.5
+    assert np.allclose(np.asarray(refracted.wo).ravel(), [-sine, 0, -math.sqrt(1 - sine**2)], atol=1e-6)
+    assert np.asarray(weight).ravel().tolist() == [1, 1, 1]
+    # From inside, past the critical angle.
+    total, _ = bsdf.sample(mi.BSDFContext(), interaction(mi, (0.8, 0.0, -0.6)), 0.9, mi.Point2f(0.5))
+    assert np.allclose(np.asarray(total.wo).ravel(), [-0.8, 0, -0.6], atol=1e-6)
+    only_mirror = mi.BSDFContext()
+    only_mirror.component = 2
+    assert bsdf.sample(only_mirror, interaction(mi, wi), 0.9, mi.Point2f(0.5))[0].wo.z[0] > 0
+
+
+# ---- The emitter
+
+
+def test_attenuated_point_light(mi):
+    light = mi.load_dict(
+        {
+            "type": "attenuated_point",
+            "position": [0.0, 3.0, 4.0],
+            "color": {"type": "rgb", "value": [1.0, 0.5, 2.0]},
+            "attenuation": [0.5, 0.25, 0.125],
+        }
+    )
+    ds, irradiance = light.sample_direction(interaction(mi, (0, 0, 1)), mi.Point2f(0))
+    assert ds.dist[0] == pytest.approx(5)
+    expected = math.pi * np.array([1, 0.5, 2]) / (0.5 + 0.25 * 5 + 0.125 * 25)
+    assert np.allclose(np.asarray(irradiance).ravel(), expected, rtol=1e-6)
+
+
+# ---- The sensor
+
+
+@pytest.mark.parametrize("pixel", [0.0, -0.5])
+def test_pinhole_is_mitsubas_perspective(mi, pixel):
+    film = {"type": "hdrfilm", "width": 80, "height": 60, "rfilter": {"type": "box"}}
+    eye, look_at, up = [1.0, 2.0, 3.0], [0.5, 0.0, -4.0], [0.1, 1.0, 0.2]
+    pinhole = mi.load_dict(
+        {"type": "pinhole", "eye": eye, "look_at": look_at, "up": up, "fovy": 50.0, "pixel_offset": pixel, "film": film}
+    )
+    perspective = mi.load_dict(
+        {
+            "type": "perspective",
+            "fov": 50.0,
+            "fov_axis": "y",
+            "principal_point_offset_x": pixel / 80,
+            "principal_point_offset_y": pixel / 60,
+            "to_world": mi.ScalarTransform4f().look_at(origin=eye, target=look_at, up=up),
+            "film": film,
+        }
+    )
+    position = mi.Point2f([0.01, 0.3, 0.99], [0.02, 0.7, 0.95])
+    ours, _ = pinhole.sample_ray(0.0, 0.0, position, mi.Point2f(0))
+    theirs, _ = perspective.sample_ray(0.0, 0.0, position, mi.Point2f(0))
+    assert np.abs(np.asarray(ours.d) - np.asarray(theirs.d)).max() < 1e-6
+
+
+def test_pinhole_sends_the_course_rays(mi):
+    film = {"type": "hdrfilm", "width": 4, "height": 2}
+    pinhole = mi.load_dict(
+        {"type": "pinhole", "eye": [0, 0, 0], "look_at": [0, 0, -1], "up": [0, 1, 0], "fovy": 90.0, "film": film}
+    )
+    origin, direction = pinhole.primary_ray(mi.Point2d(0, 0))
+    # The top left corner of a window that is twice as wide as high: view down -z, right is +x.
+    assert np.allclose(np.asarray(direction).ravel(), np.array([-2, 1, -1]) / math.sqrt(6), atol=1e-15)
+    assert not np.asarray(origin).any()
+
+
+# ---- What Dr.Jit gets wrong
+
+
+def test_drjit_exp2_in_double_precision_overflows_where_it_should_underflow(mi):
+    """Shows why `rays.power` exists; when this fails, Dr.Jit has been mended and `power` may go."""
+    import drjit as dr
+
+    assert np.isinf(dr.exp2(mi.Float64(-1023.8))[0])
+
+
+def test_power_underflows(mi):
+    from mitsuba_plugins.integrators.rays import power
+
+    base = np.linspace(0, 1, 20_001)
+    for exponent in (0.0, 1.0, 1000.0, 1e6):
+        result = np.asarray(power(mi.Float64(base), mi.Float64(exponent)))
+        assert np.allclose(result, base**exponent, rtol=1e-9, atol=1e-290)
+
+
+# ---- The integrator
+
+
+@pytest.mark.parametrize("intersections", ["analytic", "mesh"])
+def test_symbolic_and_evaluated_loops_agree(mi, small_scene, intersections):
+    """Dr.Jit compiles the integrator's loops; run step by step they must draw the same."""
+    import drjit as dr
+
+    from converter.to_mitsuba.load import load_description
+    from converter.to_mitsuba.scene import scene_description
+
+    scene = load_description(scene_description(small_scene, Settings(width=48, height=36), intersections))
+    symbolic = np.asarray(mi.render(scene))
+    with (
+        dr.scoped_set_flag(dr.JitFlag.SymbolicLoops, False),
+        dr.scoped_set_flag(dr.JitFlag.SymbolicConditionals, False),
+    ):
+        evaluated = np.asarray(mi.render(scene))
+    assert np.isfinite(symbolic).all()
+    assert np.abs(symbolic - evaluated).max() < 1e-6
+
+
+def test_direct_integrator_draws_the_same_light(mi, small_scene):
+    """Mitsuba's own integrator with our BSDF and lights, on a scene without ambient light, mirrors and glass."""
+    from dataclasses import replace
+
+    from converter.to_mitsuba.load import load_description
+    from converter.to_mitsuba.scene import scene_description
+
+    matte = tuple(replace(f, ka=0.0, kr=0.0, kt=0.0) for f in small_scene.finishes)
+    scene = replace(small_scene, finishes=matte, ambient=(0.0, 0.0, 0.0))
+    loaded = load_description(scene_description(scene, Settings(width=80, height=60)))
+    whitted = np.asarray(mi.render(loaded))
+    direct = np.asarray(mi.render(loaded, integrator=mi.load_dict({"type": "direct"}), spp=1))
+    differ = (np.abs(whitted - direct) > 1 / 255).any(axis=-1)
+    assert whitted.max() > 0.3
+    assert differ.mean() < 0.03, "shadow edges and silhouettes only: Mitsuba's rays are in single precision"
