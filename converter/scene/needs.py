@@ -4,7 +4,7 @@ import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from converter.scene.model import Color, Finish, Polyhedron, Scene, Vector
+from converter.scene.model import Color, Finish, Polyhedron, Scene, Shape, Sphere, Vector
 from converter.scene.settings import IorReading, Settings
 
 if TYPE_CHECKING:
@@ -30,7 +30,9 @@ class SceneNeeds:
         max_depth: bounces to follow after the primary ray.
         background: linear RGB of rays that hit nothing.
         planes: for each object the indices of the planes that have a face, ascending; for a sphere none.
-        boxes: for each bounded polyhedron the lower and the upper corner of the box around it; for others None.
+        boxes: for each object the lower and the upper corner of the box around it, of an unbounded one around its
+            vertices (where a face has none, around its point nearest the origin).
+        bounded: for each object whether it is.
 
     """
 
@@ -45,7 +47,8 @@ class SceneNeeds:
     max_depth: int
     background: Color
     planes: tuple[tuple[int, ...], ...]
-    boxes: tuple[tuple[Vector, Vector] | None, ...]
+    boxes: tuple[tuple[Vector, Vector], ...]
+    bounded: tuple[bool, ...]
 
     @property
     def bounces(self) -> bool:
@@ -78,8 +81,15 @@ def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
         max_depth=max_depth,
         background=scene.ambient if settings.background is None else settings.background,
         planes=tuple(f.kept if f else () for f in facts),
-        boxes=tuple((f.low, f.high) if f and f.bounded else None for f in facts),
+        boxes=tuple((f.low, f.high) if f else _box(o.shape) for o, f in zip(scene.objects, facts, strict=True)),
+        bounded=tuple(f is None or f.bounded for f in facts),
     )
+
+
+def _box(sphere: Shape) -> tuple[Vector, Vector]:
+    assert isinstance(sphere, Sphere)
+    (x, y, z), r = sphere.center, sphere.radius
+    return (x - r, y - r, z - r), (x + r, y + r, z + r)
 
 
 def _polyhedron_facts(scene: Scene) -> "list[PolyhedronFacts | None]":

@@ -11,42 +11,41 @@ to half-spaces. And the mesh is compared with the polygons of `native_tracer.hal
 hull that misses a face is not used; the polygons' neighbourhoods are, if they close a surface.
 """
 
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import dataclass
+from collections import Counter
+from collections.abc import Iterable, Sequence
+from dataclasses import dataclass, replace
+from itertools import islice
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal, NamedTuple
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 from numpy.typing import NDArray
 
-from native_tracer.halfspaces import Face, HalfSpace, polyhedron_faces, polyhedron_facts
+from converter.to_mitsuba.bounds import Box, scene_bounds
+from native_tracer.halfspaces import Face, HalfSpace, PolyhedronFacts, polyhedron_faces, polyhedron_facts
 
 if TYPE_CHECKING:
     import trimesh
 
+__all__ = ["Box", "PolyhedronError", "PolyhedronMesh", "polyhedron_mesh", "scene_bounds", "write_ply"]
+
 Floats = NDArray[np.float64]
 Long = NDArray[np.longdouble]
 Method = Literal["hull", "polygons"]
+METHODS: tuple[Method, Method] = ("hull", "polygons")
 Ring = list[int]
-"""Neighbours of a face, by their planes' indices, counterclockwise as seen from outside."""
+"""What is around a face, neighbours' planes or vertices, counterclockwise as seen from outside."""
 
 HAIR = 2.0**-46
-"""Edges shorter than this share of their distance from the origin are points: the planes' roundings, 2^-53 each, move a
-vertex of planes at ordinary angles by less."""
-AREA_TOLERANCE = 1e-6
-"""How much areas by the two methods may differ, relatively. Both compute with a mantissa of 64 bits, of which planes at
-an angle s lose -log2(s); a neighbour too few makes more of a difference, or none that can be seen."""
+"""Edges shorter than this share of their distance from the origin become points: at ordinary angles the roundings of
+the planes, 2^-53 each, move vertices by less."""
+OFF = 2.0**-44
+"""How far a vertex may be from the planes of its faces, as a share of the body's distance from the origin: it is
+computed to about 2^-53 of that, and moved by a `HAIR` at most."""
 
 
 class PolyhedronError(ValueError):
     """A polyhedron cannot be made a mesh; the message names it, and the plane."""
-
-
-class Box(NamedTuple):
-    """An axis-aligned box."""
-
-    low: tuple[float, float, float]
-    high: tuple[float, float, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,6 +58,7 @@ class PolyhedronMesh:
         planes: (m,) int32, for each triangle the index of its plane among the polyhedron's.
         deviation: how far the vertices, rounded to float32, are from the planes of their triangles, at most.
         method: where the neighbourhoods come from, the dual hull or the clipped polygons.
+        outside: planes whose faces lie outside of the box altogether, and have no triangles.
 
     """
 
@@ -67,6 +67,7 @@ class PolyhedronMesh:
     planes: NDArray[np.int32]
     deviation: float
     method: Method
+    outside: tuple[int, ...] = ()
 
     def to_trimesh(self) -> "trimesh.Trimesh":
         """As a trimesh, vertices and triangles in the same order."""
@@ -78,40 +79,43 @@ class PolyhedronMesh:
 def polyhedron_mesh(planes: Sequence[HalfSpace], bounds: Box, name: str = "polyhedron") -> PolyhedronMesh:
     """Make a mesh of an intersection of half-spaces.
 
+    What reaches out of `bounds` is cut off there, and the mesh left open: the box is not in the scene. Only what lies
+    outside altogether is given a larger box, since Mitsuba takes no mesh without triangles.
+
     Args:
         planes: (n, 4), half-spaces a x + b y + c z + d <= 0.
-        bounds: what reaches out of this box is cut off there. The mesh is open where the box cuts it.
+        bounds: a box that holds all that can be seen.
         name: what messages call the polyhedron.
 
     Raises:
-        PolyhedronError: there is no volume, a face lies outside of `bounds`, or no method gives a mesh with all faces.
+        PolyhedronError: there is no volume, or no method gives a closed surface.
 
     """
-    closed: list[Sequence[float]] = [tuple(map(float, plane)) for plane in planes]
-    faces = polyhedron_faces(closed)
+    body = [tuple(map(float, plane)) for plane in planes]
+    closed, faces = body, polyhedron_faces(body)
     kept: Sequence[int] = [k for k, face in enumerate(faces) if face.neighbors]
     if not _fit(faces, bounds):
-        facts = polyhedron_facts([closed])[0]
+        facts = polyhedron_facts([body])[0]
         if not facts.solid:
             raise PolyhedronError(f"{name}: planes {_listed(facts.conflict)} leave no volume")
         kept = facts.kept
-        closed += _box_planes(bounds)
-        faces = polyhedron_faces(closed)
-        if outside := [k for k in kept if not (faces and faces[k].neighbors)]:
-            raise PolyhedronError(f"{name}: the face of plane {_listed(outside)} lies outside of the bounds")
-
+        for box in (bounds, _enlarged(bounds, facts)):
+            closed = body + _box_planes(box)
+            faces = polyhedron_faces(closed)
+            if faces and any(faces[k].neighbors for k in kept):
+                break
+        if kept and not faces:
+            raise PolyhedronError(f"{name} is too thin, so far from the origin")
     unit = _unit_planes(closed)
+    edges = _edges(faces)
     problems = []
-    methods: tuple[tuple[Method, Callable[[Long, Sequence[Face]], dict[int, Ring]]], ...]
-    methods = ("hull", _hull_rings), ("polygons", _polygon_rings)
-    for method, find_rings in methods:
+    for method in METHODS:
         try:
-            mesh = _mesh_of(unit, find_rings(unit, faces), len(planes), method)
-            _check_areas(unit, mesh, faces, kept)
+            rings = _hull_rings(unit, faces, edges) if method == "hull" else _polygon_rings(faces, edges)
+            mesh = _mesh(unit, rings, len(planes), faces, method)
+            return replace(mesh, outside=tuple(k for k in kept if not faces[k].neighbors))
         except PolyhedronError as error:
             problems.append(f"{error} (by {method})")
-        else:
-            return mesh
     raise PolyhedronError(f"{name}: " + "; ".join(problems))
 
 
@@ -123,9 +127,50 @@ def write_ply(mesh: PolyhedronMesh, path: Path) -> None:
 # ---- Neighbourhoods --------------------------------------------------------------------------------------------------
 
 
-def _hull_rings(planes: Long, faces: Sequence[Face]) -> dict[int, Ring]:
-    """Find each face's neighbours by the convex hull of the dual points."""
-    from manifold3d import Manifold  # late, as trimesh
+def _edges(faces: Sequence[Face]) -> set[tuple[int, int]]:
+    """The pairs of faces that share an edge, by both their clipped polygons, either way round.
+
+    Where more than three planes meet in a vertex, rounding puts edges of no length between them: those are left out.
+    """
+    found: set[tuple[int, int]] = set()
+    long: set[tuple[int, int]] = set()
+    for k, face in enumerate(faces):
+        found |= {(k, i) for i in face.neighbors}
+        long |= {(k, i) for i, length in _relative_lengths(face) if length > HAIR}
+    edges = {(k, i) for k, i in long if (i, k) in long}
+    # A face that has no others keeps them.
+    sizes = Counter(k for k, _ in edges)
+    narrow = {k for k, face in enumerate(faces) if face.neighbors and sizes[k] < 3}
+    return edges | {(k, i) for k, i in found if (i, k) in found and (k in narrow or i in narrow)}
+
+
+def _relative_lengths(face: Face) -> Iterable[tuple[int, float]]:
+    """A face's neighbours, with the edges' lengths relative to their distance from the origin."""
+    if not face.neighbors:
+        return ()
+    begins = _points(face)
+    ends = np.roll(begins, -1, axis=0)
+    lengths = np.linalg.norm(ends - begins, axis=1) / np.abs(begins).max()
+    return zip(face.neighbors, lengths.tolist(), strict=True)
+
+
+def _points(face: Face) -> Floats:
+    return np.reshape(face.points, (-1, 3))
+
+
+def _polygon_rings(faces: Sequence[Face], edges: set[tuple[int, int]]) -> dict[int, Ring]:
+    """Take each face's neighbours from the clipped polygons."""
+    return {k: [i for i in face.neighbors if (k, i) in edges] for k, face in enumerate(faces) if face.neighbors}
+
+
+def _hull_rings(planes: Long, faces: Sequence[Face], edges: set[tuple[int, int]]) -> dict[int, Ring]:
+    """Find each face's neighbours by the convex hull of the dual points.
+
+    Raises:
+        PolyhedronError: the hull misses a plane, or an edge of the clipped polygons.
+
+    """
+    from manifold3d import Manifold  # late: takes a while, and many scenes have no polyhedra
 
     kept = [k for k, face in enumerate(faces) if face.neighbors]
     center, axes = _frame([faces[k] for k in kept])
@@ -138,33 +183,22 @@ def _hull_rings(planes: Long, faces: Sequence[Face]) -> dict[int, Ring]:
     hull = Manifold.hull_points(points).to_mesh64()
     corners = np.asarray(hull.vert_properties, dtype=np.float64)[:, :3] + 0.0
     owners = [plane_of[point.tobytes()] for point in corners]
-    missing = sorted(set(kept) - set(owners))
-    if missing:
+    if missing := sorted(set(kept) - set(owners)):
         raise PolyhedronError(f"plane {_listed(missing)} has no face")
     following: dict[int, dict[int, int]] = {k: {} for k in kept}
     for triangle in np.asarray(hull.tri_verts).tolist():
         a, b, c = (owners[corner] for corner in triangle)
         following[a][b], following[b][c], following[c][a] = c, a, b
-    rings = {k: _walk(ring) for k, ring in following.items()}
-    surface = _Surface.of(planes, rings)
-    return _without_hairs(rings, surface.edge_lengths())
-
-
-def _polygon_rings(planes: Long, faces: Sequence[Face]) -> dict[int, Ring]:
-    """Take each face's neighbours from the clipped polygons."""
-    rings = {k: face.neighbors for k, face in enumerate(faces) if face.neighbors}
-    lengths: dict[tuple[int, int], float] = {}
-    for k, ring in rings.items():
-        points = np.reshape(faces[k].points, (-1, 3))
-        ends = np.roll(points, -1, axis=0)
-        relative = np.linalg.norm(ends - points, axis=1) / np.abs(points).max()
-        lengths.update(zip(((k, i) for i in ring), relative.tolist(), strict=True))
-    return _without_hairs(rings, lengths)
+    # Dual points in a plane are a vertex of many faces, which the hull splits at random: only real edges count.
+    rings = {k: [i for i in _walk(ring) if (k, i) in edges] for k, ring in following.items()}
+    if missing := [k for k, n in Counter(k for k, _ in edges).items() if len(rings[k]) != n]:
+        raise PolyhedronError(f"plane {_listed(missing)} has other neighbours")
+    return rings
 
 
 def _frame(faces: Sequence[Face]) -> tuple[Floats, Floats]:
     """A point inside, and columns u, v, w such that the points center + x u + y v + z w fill about a unit ball."""
-    points = np.concatenate([np.reshape(face.points, (-1, 3)) for face in faces])
+    points = np.concatenate([_points(face) for face in faces])
     weights = np.concatenate([np.full(len(face.neighbors), face.area / len(face.neighbors)) for face in faces])
     weights /= weights.sum()
     center = weights @ points
@@ -181,105 +215,77 @@ def _walk(following: dict[int, int]) -> Ring:
     return ring
 
 
-def _without_hairs(rings: dict[int, Ring], lengths: dict[tuple[int, int], float]) -> dict[int, Ring]:
-    """Make points of the edges that are `HAIR` long at most, seen from either side."""
-    hairs = {frozenset(pair) for pair, length in lengths.items() if length <= HAIR}
-    result = {k: [i for i in ring if frozenset((k, i)) not in hairs] for k, ring in rings.items()}
-    lost = [k for k, ring in result.items() if len(ring) < 3]
-    if lost:
-        raise PolyhedronError(f"the face of plane {_listed(lost)} is too narrow")
-    return result
-
-
 # ---- From neighbourhoods to triangles --------------------------------------------------------------------------------
 
 
-@dataclass(frozen=True, eq=False)
-class _Surface:
-    """A closed surface of polygons, as half-edges: one for each face and neighbour, ring by ring.
+def _mesh(planes: Long, rings: dict[int, Ring], count: int, faces: Sequence[Face], method: Method) -> PolyhedronMesh:
+    """The faces of the first `count` planes as triangles; the rest are the box's.
 
-    Attributes:
-        owners, neighbors: (h,) the face a half-edge belongs to, and the one on its other side.
-        before: (h,) the half-edge before it in its ring.
-        ends: (h,) the vertex it leads to.
-        vertices: (v, 3) long double.
-        errors: (v,) how far off the vertices may be by rounding.
+    Raises:
+        PolyhedronError: the rings close no surface, or not that of the polyhedron.
 
     """
-
-    owners: NDArray[np.int64]
-    neighbors: NDArray[np.int64]
-    before: NDArray[np.int64]
-    ends: NDArray[np.int64]
-    vertices: Long
-    errors: Long
-
-    @classmethod
-    def of(cls, planes: Long, rings: dict[int, Ring]) -> "_Surface":
-        """Join rings of neighbours.
-
-        Raises:
-            PolyhedronError: they close no surface like a sphere's.
-
-        """
-        owners = np.repeat(list(rings), [len(ring) for ring in rings.values()])
-        neighbors = np.concatenate([np.array(ring) for ring in rings.values()])
-        before = np.concatenate([first + np.roll(np.arange(n), 1) for first, n in _spans(rings)])
-        after = np.empty_like(before)
-        after[before] = np.arange(len(before))
-        keys, twin_keys = owners * len(planes) + neighbors, neighbors * len(planes) + owners
-        order = np.argsort(keys)
-        twins = order[np.minimum(np.searchsorted(keys, twin_keys, sorter=order), len(keys) - 1)]
-        single = owners[keys[twins] != twin_keys]
-        if single.size:
-            raise PolyhedronError(f"the face of plane {_listed(np.unique(single))} does not join its neighbours")
-        # Around a vertex: from a half-edge that ends there to the next one, which ends there on the face beyond. The
-        # least index in each cycle stands for the vertex; it goes twice as far in every round.
-        labels, step = np.arange(len(keys)), twins[after]
-        for _ in range(len(keys).bit_length()):
-            labels = np.minimum(labels, labels[step])
-            step = step[step]
-        _, ends = np.unique(labels, return_inverse=True)
-        count = int(ends.max()) + 1
-        if count - len(keys) // 2 + len(rings) != 2:
-            raise PolyhedronError("the faces close no surface")
-        order = np.argsort(ends, kind="stable")
-        groups = np.split(owners[order], np.flatnonzero(np.diff(ends[order])) + 1)
-        return cls(owners, neighbors, before, ends, *_meeting_points(planes, groups))
-
-    def edge_lengths(self) -> dict[tuple[int, int], float]:
-        """Lengths of the edges by both faces' planes, relative to their distance from the origin, less their errors."""
-        i, j = self.ends[self.before], self.ends
-        begin, end = self.vertices[i], self.vertices[j]
-        lengths = np.sqrt(((end - begin) ** 2).sum(axis=1)) - self.errors[i] - self.errors[j]
-        pairs = zip(self.owners.tolist(), self.neighbors.tolist(), strict=True)
-        return dict(zip(pairs, (lengths / np.abs(end).max(axis=1)).tolist(), strict=True))
+    vertices, corners = _vertices(rings, faces)
+    distances = vertices @ planes[:, :3].T.astype(np.float64) + planes[:, 3].astype(np.float64)
+    reach = np.abs(vertices).max()
+    if out := [k for k in corners if distances[:, k].max() > OFF * reach]:
+        raise PolyhedronError(f"plane {_listed(out)} cuts off more")
+    if off := [k for k, ring in corners.items() if distances[ring, k].min() < -OFF * reach]:
+        raise PolyhedronError(f"the face of plane {_listed(off)} is not flat")
+    triangles: list[list[int]] = []
+    owners: list[int] = []
+    for k, ring in corners.items():
+        if k < count:
+            face = _triangulated(ring)
+            triangles += face
+            owners += [k] * len(face)
+    used, indices = np.unique(np.reshape(np.array(triangles, dtype=np.int64), (-1, 3)), return_inverse=True)
+    indices = indices.reshape(-1, 3)
+    vertices = vertices[used]
+    rounded = vertices.astype(np.float32).astype(np.longdouble)[indices]
+    sides = planes[owners]
+    deviations = np.abs((rounded * sides[:, None, :3]).sum(axis=2) + sides[:, None, 3])
+    return PolyhedronMesh(
+        vertices,
+        indices.astype(np.uint32),
+        np.array(owners, dtype=np.int32),
+        float(deviations.max(initial=0)),
+        method,
+    )
 
 
-def _spans(rings: dict[int, Ring]) -> list[tuple[int, int]]:
-    sizes = [len(ring) for ring in rings.values()]
-    return list(zip(np.cumsum([0, *sizes[:-1]]).tolist(), sizes, strict=True))
+def _vertices(rings: dict[int, Ring], faces: Sequence[Face]) -> tuple[Floats, dict[int, Ring]]:
+    """The vertices of a closed surface, (v, 3), and those that each ring's edges begin at.
 
+    Raises:
+        PolyhedronError: a face does not join its neighbours, or the surface is not closed like a sphere's.
 
-def _meeting_points(planes: Long, groups: list[NDArray[np.int64]]) -> tuple[Long, Long]:
-    """Where each group of three planes or more meets, by the three at the largest angles, and its rounding error."""
-    triples = np.array([group if len(group) == 3 else _steepest(planes[group, :3], group) for group in groups])
-    a, b, c = (planes[triples[:, i], :3] for i in range(3))
-    sides = np.cross(b, c), np.cross(c, a), np.cross(a, b)
-    volumes = (a * sides[0]).sum(axis=1)
-    offsets = planes[triples, 3]
-    points: Long = -np.sum([offsets[:, i, None] * side for i, side in enumerate(sides)], axis=0) / volumes[:, None]
-    # A product of unit vectors is off by the precision, however small it is.
-    return points, 8 * np.finfo(np.longdouble).eps * np.abs(offsets).max(axis=1) / np.abs(volumes)
-
-
-def _steepest(normals: Long, group: NDArray[np.int64]) -> list[int]:
-    i = 0
-    for _ in range(2):  # the second round improves on the arbitrary start
-        j = int(np.argmax((np.cross(normals[i], normals) ** 2).sum(axis=1)))
-        k = int(np.argmax(np.abs(normals @ np.cross(normals[i], normals[j]))))
-        i = int(np.argmax(np.abs(normals @ np.cross(normals[j], normals[k]))))
-    return [int(group[i]), int(group[j]), int(group[k])]
+    """
+    # Half-edges, one for each face and neighbour: the one on the other side, and the next one around the face.
+    index = {pair: h for h, pair in enumerate((k, i) for k, ring in rings.items() for i in ring)}
+    if single := {k for k, i in index if (i, k) not in index}:
+        raise PolyhedronError(f"the face of plane {_listed(sorted(single))} does not join its neighbours")
+    if lost := [k for k, ring in rings.items() if len(ring) < 3]:
+        raise PolyhedronError(f"the face of plane {_listed(lost)} is lost")
+    twins = [index[i, k] for k, i in index]
+    before = [index[k, ring[a - 1]] for k, ring in rings.items() for a in range(len(ring))]
+    # Around a vertex: from a half-edge that begins there, to the twin of the one before it.
+    vertex = [-1] * len(index)
+    count = 0
+    for start in range(len(index)):
+        h = start
+        while vertex[h] < 0:
+            vertex[h] = count
+            h = twins[before[h]]
+        count += vertex[start] == count
+    if count - len(index) // 2 + len(rings) != 2:
+        raise PolyhedronError("the faces close no surface")
+    # Every face has computed where its edges begin. They agree but for rounding, and no plane is far from their mean.
+    begin = {(k, i): p for k, face in enumerate(faces) for i, p in zip(face.neighbors, _points(face), strict=True)}
+    sums = np.zeros((count, 3))
+    np.add.at(sums, vertex, [begin[pair] for pair in index])
+    places = iter(vertex)
+    return sums / np.bincount(vertex)[:, None], {k: list(islice(places, len(ring))) for k, ring in rings.items()}
 
 
 def _triangulated(corners: Ring) -> list[list[int]]:
@@ -292,50 +298,6 @@ def _triangulated(corners: Ring) -> list[list[int]]:
     return [*triangles, corners] if len(corners) == 3 else triangles
 
 
-def _mesh_of(planes: Long, rings: dict[int, Ring], plane_count: int, method: Method) -> PolyhedronMesh:
-    """The faces of the first `plane_count` planes as triangles; the rest are the box's."""
-    surface = _Surface.of(planes, rings)
-    triangles: list[list[int]] = []
-    owners: list[int] = []
-    for k, (first, size) in zip(rings, _spans(rings), strict=True):
-        if k < plane_count:
-            face = _triangulated(surface.ends[first : first + size].tolist())
-            triangles += face
-            owners += [k] * len(face)
-    used, corners = np.unique(np.reshape(np.array(triangles, dtype=np.int64), (-1, 3)), return_inverse=True)
-    vertices = surface.vertices[used].astype(np.float64)
-    corners = corners.reshape(-1, 3)
-    rounded = vertices.astype(np.float32).astype(np.longdouble)[corners]
-    sides = planes[owners]
-    distances = np.abs((rounded * sides[:, None, :3]).sum(axis=2) + sides[:, None, 3])
-    return PolyhedronMesh(
-        vertices,
-        corners.astype(np.uint32),
-        np.array(owners, dtype=np.int32),
-        float(distances.max(initial=0)),
-        method,
-    )
-
-
-def _check_areas(planes: Long, mesh: PolyhedronMesh, faces: Sequence[Face], kept: Sequence[int]) -> None:
-    """Compare each face's area with that of its clipped polygon.
-
-    Raises:
-        PolyhedronError: they differ.
-
-    """
-    a, b, c = (mesh.vertices[mesh.triangles[:, i]].astype(np.longdouble) for i in range(3))
-    areas = (np.cross(b - a, c - a) * planes[mesh.planes, :3]).sum(axis=1) / 2
-    total = np.zeros(len(planes), dtype=np.longdouble)
-    np.add.at(total, mesh.planes, areas)
-    for k in kept:
-        points = np.reshape(faces[k].points, (-1, 3))
-        perimeter = np.linalg.norm(points - np.roll(points, 1, axis=0), axis=1).sum()
-        hair = 4 * HAIR * np.abs(points).max() * perimeter
-        if not abs(total[k] - faces[k].area) <= AREA_TOLERANCE * faces[k].area + hair:
-            raise PolyhedronError(f"the face of plane {k} has an area of {total[k]:g}, not {faces[k].area:g}")
-
-
 def _unit_planes(planes: Sequence[Sequence[float]]) -> Long:
     rows = np.reshape(np.array(planes, dtype=np.longdouble), (-1, 4))
     unit: Long = rows / np.sqrt((rows[:, :3] ** 2).sum(axis=1))[:, None]
@@ -344,8 +306,15 @@ def _unit_planes(planes: Sequence[Sequence[float]]) -> Long:
 
 def _fit(faces: Sequence[Face], box: Box) -> bool:
     """Whether there are faces, all inside the box."""
-    points = np.reshape([x for face in faces for x in face.points], (-1, 3))
-    return points.size > 0 and bool(np.all((points >= box.low) & (points <= box.high)))
+    points = np.concatenate([np.empty((0, 3)), *map(_points, faces)])
+    return len(points) > 0 and bool(np.all((points >= box.low) & (points <= box.high)))
+
+
+def _enlarged(box: Box, facts: PolyhedronFacts) -> Box:
+    """A box that also holds the vertices of a polyhedron, with room to spare."""
+    low, high = np.minimum(box.low, facts.low), np.maximum(box.high, facts.high)
+    room = (high - low).max()
+    return Box.of(low - room, high + room)
 
 
 def _box_planes(box: Box) -> list[tuple[float, ...]]:

@@ -2,7 +2,7 @@
 
 from typing import Any
 
-from converter.scene.model import Object, Polyhedron, Scene, Sphere, Vector
+from converter.scene.model import Polyhedron, Scene, Sphere
 from converter.scene.needs import SceneNeeds
 from converter.scene.settings import Settings
 
@@ -16,15 +16,13 @@ def surfaces(scene: Scene, needs: SceneNeeds, settings: Settings) -> tuple[dict[
     geometry: dict[str, Any] = {}
     bounds = None
     if any(isinstance(o.shape, Polyhedron) for o in scene.objects):
-        from converter.to_mitsuba.polyhedra import scene_bounds
+        from converter.to_mitsuba.bounds import scene_bounds
 
-        bounds = scene_bounds(scene)
+        bounds = scene_bounds(scene, settings)
     for i, o in enumerate(scene.objects):
         name = f"object_{i}"
         shapes[name], geometry[name] = (
-            _sphere(o.shape)
-            if isinstance(o.shape, Sphere)
-            else _polyhedron(o, o.shape, needs.planes[i], needs.boxes[i], bounds)
+            _sphere(o.shape) if isinstance(o.shape, Sphere) else _polyhedron(o.shape, needs, i, bounds)
         )
         shapes[name]["bsdf"] = {"type": "ref", "id": f"finish_{o.finish}_pigment_{o.pigment}"}
     return shapes, geometry
@@ -36,15 +34,15 @@ def _sphere(sphere: Sphere) -> tuple[dict[str, Any], dict[str, Any]]:
 
 
 def _polyhedron(
-    o: Object, polyhedron: Polyhedron, kept: tuple[int, ...], box: tuple[Vector, Vector] | None, bounds: Any
+    polyhedron: Polyhedron, needs: SceneNeeds, i: int, bounds: Any
 ) -> tuple[dict[str, Any], dict[str, Any]]:
     from converter.to_mitsuba.polyhedra import polyhedron_mesh
 
-    mesh = polyhedron_mesh(polyhedron.planes, bounds)
+    mesh = polyhedron_mesh(polyhedron.planes, bounds, f"object {i}")
     surface = {
-        "planes": {str(index): list(polyhedron.planes[index]) for index in kept},
+        "planes": {str(index): list(polyhedron.planes[index]) for index in needs.planes[i]},
         "triangles": mesh.planes.tolist(),
-        "box": box,
+        "box": needs.boxes[i] if needs.bounded[i] else None,
         "deviation": mesh.deviation,
     }
     return {"type": "mesh", "mesh": mesh}, surface

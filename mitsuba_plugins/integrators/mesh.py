@@ -14,7 +14,7 @@ import drjit as dr
 import mitsuba as mi
 
 from mitsuba_plugins.integrators.geometry import Surface
-from mitsuba_plugins.integrators.rays import NOTHING, Ray
+from mitsuba_plugins.integrators.rays import NOTHING, Ray, lanes
 from mitsuba_plugins.integrators.tables import Records
 
 OFFSET = 2.0**-20
@@ -66,7 +66,7 @@ class MeshSurfaces:
         t = dr.full(mi.Float64, dr.inf, width)
         found = dr.full(mi.UInt32, NOTHING, width)
         record = dr.zeros(mi.UInt32, width)
-        searching = mi.Bool(active) & dr.full(mi.Bool, True, width)
+        searching = active & lanes(width)
         while searching:
             probe = mi.Ray3f(mi.Point3f(start), mi.Vector3f(ray.d))
             pi = self._scene.ray_intersect_preliminary(probe, coherent=False, active=searching)

@@ -58,6 +58,15 @@ def start_ray(o: Any, d: Any) -> Ray:
     )
 
 
+def lanes(width: int) -> Any:
+    """Mask of the rays that exist.
+
+    The last SIMD packet of a wavefront is filled up with lanes that hold garbage. They answer comparisons, but no ray is
+    traced for them, so that a loop that waits until each has found something may wait for ever.
+    """
+    return dr.arange(mi.UInt32, width) < width
+
+
 def spawn(hit: Hit, d: Any, inside: Any) -> Ray:
     """The ray that leaves `hit` in direction `d`, on the given side of the object."""
     reach = dr.maximum(dr.maximum(dr.abs(hit.p.x), dr.abs(hit.p.y)), dr.abs(hit.p.z)) + hit.t

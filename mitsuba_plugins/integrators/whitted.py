@@ -10,7 +10,7 @@ import mitsuba as mi
 from mitsuba_plugins.integrators.analytic import AnalyticSurfaces
 from mitsuba_plugins.integrators.geometry import parse_geometry
 from mitsuba_plugins.integrators.mesh import MeshSurfaces
-from mitsuba_plugins.integrators.rays import NOTHING, Hit, Ray, power, reflect, refract, spawn, start_ray, unit
+from mitsuba_plugins.integrators.rays import NOTHING, Hit, Ray, lanes, power, reflect, refract, spawn, start_ray, unit
 from mitsuba_plugins.integrators.stack import RayStack
 from mitsuba_plugins.integrators.tables import Finish, Illumination, Lights, Materials, Records
 
@@ -187,7 +187,7 @@ class Whitted(mi.SamplingIntegrator):
         radiance = dr.zeros(mi.Color3f, width)
         weight = dr.full(mi.Float64, 1, width)
         depth = dr.zeros(mi.UInt32, width)
-        active = mi.Bool(active) & dr.full(mi.Bool, True, width)
+        active = active & lanes(width)
         waiting = dr.zeros(mi.UInt32, width)
         stack = RayStack(self.stack_size if self.branching else 0)
         while active:

@@ -1,0 +1,108 @@
+"""`whitted doctor`: what works on this machine, and what to install where something does not."""
+
+import argparse
+import os
+import platform
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+from converter.commands.exits import OK, UNAVAILABLE
+from converter.commands.options import Parser
+from converter.commands.tables import print_table
+
+PACKAGES = ("mitsuba", "drjit", "numpy", "OpenImageIO", "trimesh", "manifold3d", "flip-evaluator", "rich")
+KERNEL_CACHE = Path.home() / ".drjit"
+
+
+def parser() -> Parser:
+    """The command's arguments."""
+    return Parser(
+        "whitted doctor",
+        "[-h]",
+        "Says what works on this machine, and what to install where something does not. Each way to run Mitsuba\n"
+        "draws a small picture in a process of its own. Exit status 0: both renderers work, 3: they do not.",
+        "whitted doctor",
+    )
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Try everything, and tell."""
+    from converter.commands.version import version
+
+    print_table([("whitted", version()), ("Python", f"{platform.python_version()}, {sys.executable}"), *_packages()])
+    print()
+    rows, advice, works = _findings()
+    print_table(rows)
+    for line in advice:
+        print(f"\n{line}")
+    print(f"\n{'All is well.' if works else 'Something is missing, see above.'}")
+    return OK if works else UNAVAILABLE
+
+
+def _packages() -> Iterator[tuple[str, str]]:
+    from importlib.metadata import PackageNotFoundError
+    from importlib.metadata import version as installed
+
+    for name in PACKAGES:
+        try:
+            yield name, installed(name)
+        except PackageNotFoundError:
+            yield name, f"missing: pip install {name}"
+
+
+def _findings() -> tuple[list[tuple[str, str]], list[str], bool]:
+    """What was found, what to do about it, and whether both renderers work."""
+    from converter.commands.doctor_probe import cuda_device, try_native, try_variant
+    from converter.renderers.native import available_cores
+    from mitsuba_plugins.backend import MINIMUM_LLVM, VARIANTS, find_llvm
+
+    rows = [("cores", str(available_cores()))]
+    advice = []
+    native = try_native()
+    rows.append(("native tracer", native.told))
+    if not native.works:
+        advice.append("The native tracer: run `make`, or `pip install .`; it needs a C++20 compiler.")
+
+    library = find_llvm()
+    rows.append(("LLVM library", f"{library.path}, {library.reason}" if library else "none that can be used"))
+    device = cuda_device()
+    rows.append(("CUDA device", device or "none"))
+    working = []
+    blames_llvm = False
+    for variant in VARIANTS:
+        if variant == "cuda_ad_rgb" and device is None:
+            rows.append((variant, "needs a CUDA device"))
+            continue
+        trial = try_variant(variant)
+        rows.append((variant, trial.told))
+        if trial.works:
+            working.append(variant)
+        elif variant == "llvm_ad_rgb" and "LLVM" in trial.told:
+            blames_llvm = True
+    default = "cuda_ad_rgb" if device else "llvm_ad_rgb"
+    if default not in working:
+        instead = f" Use --variant {working[0]} until it does." if working else ""
+        advice.append(f"Mitsuba runs in {default} by default, which does not work here.{instead}")
+    if library is None or blames_llvm:
+        advice.append(_llvm_advice(MINIMUM_LLVM))
+    rows.append(("kernel cache", _kernel_cache()))
+    return rows, advice, native.works and default in working
+
+
+def _llvm_advice(least: int) -> str:
+    if os.environ.get("DRJIT_LIBLLVM_PATH"):
+        return "DRJIT_LIBLLVM_PATH names the LLVM library that is used: unset it, or name another."
+    return (
+        f"llvm_ad_rgb needs an LLVM library of version {least} or newer. On x86-64 Linux: pip install "
+        f"karellen-llvm-core. Elsewhere your system's (Debian: apt install llvm-{least}; macOS: brew install llvm)."
+    )
+
+
+def _kernel_cache() -> str:
+    """Where Dr.Jit keeps compiled kernels, and how much of them."""
+    folder = Path(os.environ.get("DRJIT_CACHE_DIR") or KERNEL_CACHE)
+    if not folder.is_dir():
+        return f"{folder}, empty"
+    sizes = [file.stat().st_size for file in folder.iterdir() if file.is_file()]
+    return f"{folder}, {len(sizes)} kernels, {sum(sizes) / (1 << 20):.1f} MiB"

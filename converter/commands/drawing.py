@@ -1,0 +1,46 @@
+"""From a scene file to an image file, as `raytrace` and `whitted render` do it."""
+
+import time
+from pathlib import Path
+
+from converter.commands.notes import load_with_notices, say
+from converter.commands.progress import ProgressBar
+from converter.images.write import check_writable, write_image
+from converter.renderers.base import Interrupted, Renderer, Rendering
+from converter.scene.settings import Settings
+
+
+def draw(
+    renderer: Renderer, scene_file: Path, out: Path, settings: Settings, quiet: bool = False, keep_partial: bool = False
+) -> tuple[Rendering, dict[str, float]]:
+    """Draw a scene into an image file, which appears whole or not at all; return the picture and seconds by stage.
+
+    With `keep_partial`, Ctrl-C writes what is finished before `Interrupted` goes on to the caller.
+
+    Raises:
+        SceneError: the scene is no scene.
+        OSError: the image cannot be written there; known before anything is drawn.
+        RendererUnavailable: the renderer does not run here.
+        Interrupted: Ctrl-C while drawing.
+
+    """
+    check_writable(out)
+    started = time.perf_counter()
+    scene = load_with_notices(scene_file, settings, quiet)
+    read = time.perf_counter()
+    with ProgressBar(out.name, quiet) as progress:
+        try:
+            rendering = renderer.render(scene, settings, progress)
+        except Interrupted as stop:
+            if keep_partial:
+                _write(stop.partial, out)
+                say(f"{out}: only a part of the picture", quiet)
+            raise
+    drawn = time.perf_counter()
+    _write(rendering, out)
+    seconds = {"read": read - started, **rendering.seconds, "write": time.perf_counter() - drawn}
+    return rendering, seconds
+
+
+def _write(rendering: Rendering, out: Path) -> None:
+    write_image(out, rendering.pixels, rendering.width, rendering.height)

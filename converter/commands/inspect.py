@@ -1,0 +1,168 @@
+"""`whitted inspect`: what a scene file holds, and what it needs of a renderer."""
+
+import argparse
+from pathlib import Path
+from typing import Any
+
+from converter.commands.exits import OK
+from converter.commands.options import Parser, add_reading_options, settings_from
+from converter.commands.tables import print_table
+
+MOST_ROWS = 20
+"""Rows of a table; a scene may have thousands of polyhedra."""
+COEFFICIENTS = ("ka", "kd", "ks", "alpha", "kr", "kt", "ior")
+
+
+def parser() -> Parser:
+    """The command's arguments."""
+    result = Parser(
+        "whitted inspect",
+        "SCENE [options]",
+        "Says what a scene file holds and what it needs, without drawing it.",
+        "whitted inspect figure1.in",
+    )
+    result.add_argument("scene", type=Path, metavar="SCENE", help="the scene file")
+    result.add_argument("--json", metavar="FILE", help="write it as JSON; - is the standard output, without the tables")
+    add_reading_options(result, picture=False)
+    return result
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Look, and tell."""
+    settings = settings_from(arguments)
+
+    from converter.commands.inspection import inspect_scene
+    from converter.commands.json_out import check_json, write_json
+    from converter.scene.parser import load_scene
+
+    check_json(arguments.json)
+    found = inspect_scene(load_scene(arguments.scene), settings)
+    if arguments.json != "-":
+        _print(found)
+    write_json(arguments.json, found)
+    return OK
+
+
+def _print(found: dict[str, Any]) -> None:
+    print_table(_overview(found), title=found["file"])
+    _print_rows(
+        "lights",
+        ("", "position", "colour", "attenuation"),
+        "r",
+        [
+            (str(light["light"]), *(_numbers(light[key]) for key in ("position", "color", "attenuation")))
+            for light in found["lights"]
+        ],
+    )
+    _print_rows(
+        "pigments",
+        ("", "kind", "", "objects"),
+        "rllr",
+        [(str(p["pigment"]), p["kind"], _pigment(p), _uses(p)) for p in found["pigments"]],
+    )
+    _print_rows(
+        "finishes",
+        ("", "line", *COEFFICIENTS, "ior is", "n1/n2", "objects"),
+        "rrrrrrrrrlrr",
+        [
+            (
+                str(f["finish"]),
+                str(f["line"] or ""),
+                *(f"{f[key]:g}" for key in COEFFICIENTS),
+                f["ior_read_as"] or "not used",
+                f"{f['n1/n2']:.4g}" if f["ior_read_as"] else "",
+                _uses(f),
+            )
+            for f in found["finishes"]
+        ],
+    )
+    _print_rows(
+        "polyhedra with redundant planes, or without bounds",
+        ("object", "line", "planes needed", "redundant", "bounded"),
+        "rr",
+        [
+            (
+                str(p["object"]),
+                str(p["line"] or ""),
+                _indices(p["planes"]),
+                _indices(p["redundant_planes"]),
+                "yes" if p["bounded"] else "no",
+            )
+            for p in found["polyhedra"]
+            if p["redundant_planes"] or not p["bounded"]
+        ],
+    )
+    for notice in found["notices"]:
+        print(f"\nnote: {notice}")
+
+
+def _overview(found: dict[str, Any]) -> list[tuple[str, str]]:
+    camera, objects, needs, unused = found["camera"], found["objects"], found["needs"], found["unused"]
+    kinds = ", ".join(_counted(kind, count) for kind, count in objects["kinds"].items())
+    bounces = [
+        name for name, needed in (("reflection", needs["reflects"]), ("refraction", needs["refracts"])) if needed
+    ]
+    shading = [name for name, needed in (("shadows", needs["lit"]), ("highlights", needs["glossy"])) if needed]
+    rows = [
+        ("camera", f"eye {_numbers(camera['eye'])}, looks at {_numbers(camera['look_at'])}"),
+        ("", f"up {_numbers(camera['up'])}, fovy {camera['fovy']:g} degrees"),
+        ("ambient light", _numbers(found["ambient"])),
+        ("background", _numbers(found["background"])),
+        ("objects", kinds or "none"),
+    ]
+    if objects["planes"]:
+        rows.append(("planes", f"{objects['planes']}, redundant: {objects['redundant_planes']}"))
+    if box := found["closing_box"]:
+        rows.append(("unbounded", _counted("polyhedron", objects["unbounded"])))
+        rows.append(("", f"whose meshes end at {_numbers(box['low'])} and {_numbers(box['high'])}"))
+    rows.append(("needs", ", ".join(shading + bounces) or "nothing but ambient light"))
+    if bounces:
+        split = "rays split in two" if needs["branches"] else "every ray has one successor"
+        rows.append(("depth", f"{needs['max_depth']} bounces, {split}"))
+    for kind, indices in unused.items():
+        if indices:
+            rows.append((f"unused {kind}", _indices(indices)))
+    return rows
+
+
+def _print_rows(title: str, header: tuple[str, ...], align: str, rows: list[tuple[str, ...]]) -> None:
+    if not rows:
+        return
+    print()
+    print_table(rows[:MOST_ROWS], header, align, title)
+    if len(rows) > MOST_ROWS:
+        print(f"... and {len(rows) - MOST_ROWS} more; --json lists them all")
+
+
+def _pigment(pigment: dict[str, Any]) -> str:
+    if pigment["kind"] == "solid":
+        return _numbers(pigment["color"])
+    if pigment["kind"] == "checker":
+        return f"{_numbers(pigment['first'])} and {_numbers(pigment['second'])}, size {pigment['size']:g}"
+    size = f"{pigment['width']} x {pigment['height']}"
+    return f"{pigment['file']}, {size}, P0 {_numbers(pigment['p0'])}, P1 {_numbers(pigment['p1'])}"
+
+
+def _uses(entry: dict[str, Any]) -> str:
+    return str(entry["objects"]) if entry["objects"] else "unused"
+
+
+def _counted(kind: str, count: int) -> str:
+    plurals = {"polyhedron": "polyhedra"}
+    return f"{count} {kind if count == 1 else plurals.get(kind, f'{kind}s')}"
+
+
+def _indices(indices: list[int]) -> str:
+    """`0-3, 7`; the first ones of very many."""
+    runs: list[list[int]] = []
+    for i in indices:
+        if runs and runs[-1][1] == i - 1:
+            runs[-1][1] = i
+        else:
+            runs.append([i, i])
+    told = [str(a) if a == b else f"{a}-{b}" for a, b in runs]
+    return ", ".join(told[:8]) + (f", ... ({len(indices)})" if len(told) > 8 else "")
+
+
+def _numbers(values: list[float]) -> str:
+    return " ".join(f"{value:g}" for value in values)

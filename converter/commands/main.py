@@ -1,0 +1,72 @@
+"""`whitted`, the program with the sub-commands. Imports only the one that is asked for."""
+
+import sys
+from collections.abc import Sequence
+
+COMMANDS = {
+    "render": "draw a scene into an image file",
+    "convert": "write a scene as files that Mitsuba 3 loads",
+    "compare": "draw a scene with both renderers, or take two images, and tell the differences",
+    "inspect": "say what a scene file holds and what it needs",
+    "pixel": "show the rays behind one pixel, in both renderers",
+    "doctor": "say what works on this machine, and what to install where something does not",
+}
+"""Every sub-command, a module of this package with `parser() -> Parser` and `run(arguments) -> int`."""
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run `whitted` with these arguments, the process's own by default; return its exit status."""
+    from converter.commands.exits import run
+
+    words = list(sys.argv[1:] if argv is None else argv)
+    name = words[0] if words else ""
+    return run(f"whitted {name}" if name in COMMANDS else "whitted", lambda: _dispatch(words))
+
+
+def _dispatch(words: list[str]) -> int:
+    from converter.commands.exits import OK, USAGE, UsageError, tell
+
+    match words:
+        case []:
+            tell(_help())
+            return USAGE
+        case ["-h" | "--help" | "help"]:
+            print(_help())
+            return OK
+        case ["--version" | "-V"]:
+            from converter.commands.version import version
+
+            print(f"whitted {version()}")
+            return OK
+        case ["help", name]:
+            return _dispatch([name, "--help"])
+        case [name, *_] if name not in COMMANDS:
+            from converter.scene.errors import did_you_mean
+
+            raise UsageError(f"there is no command {name!r}{did_you_mean(name, tuple(COMMANDS))}")
+    from importlib import import_module
+
+    command = import_module(f"converter.commands.{words[0]}")
+    arguments = command.parser().parse_intermixed_args(words[1:])
+    return int(command.run(arguments))
+
+
+def _help() -> str:
+    listed = "\n".join(f"  {name:9}{summary}" for name, summary in COMMANDS.items())
+    return f"""usage: whitted COMMAND ...
+
+Draws the course's ray tracing scenes with Mitsuba 3 and with a native tracer, and checks one against the other.
+
+commands:
+{listed}
+
+options:
+  -h, --help     show this text; after a command, that command's options
+  -V, --version  show the version
+
+example:
+  whitted render scene.in picture.png 800 600"""
+
+
+if __name__ == "__main__":
+    sys.exit(main())

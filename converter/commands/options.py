@@ -1,0 +1,208 @@
+"""Arguments that several commands share, defined once, and how they become `Settings`."""
+
+import argparse
+import math
+import os
+from dataclasses import fields
+from typing import NoReturn
+
+from converter.commands.exits import UsageError
+from converter.scene.model import Color
+from converter.scene.settings import Settings
+
+MAX_SIZE = 65535
+MAX_SAMPLES = 65536
+MAX_DEPTH = 1000
+MAX_THREADS = 1024
+DEFAULTS = Settings()
+
+
+class _HelpFormatter(argparse.RawDescriptionHelpFormatter):
+    """Finds the terminal's width by itself: argparse asks `shutil`, which takes longer to import than argparse."""
+
+    def __init__(self, prog: str) -> None:
+        try:
+            columns = int(os.environ.get("COLUMNS") or os.get_terminal_size().columns)
+        except (OSError, ValueError):
+            columns = 80
+        super().__init__(prog, max_help_position=28, width=max(40, min(columns, 120) - 2))
+
+
+class Parser(argparse.ArgumentParser):
+    """An argument parser that raises `UsageError`, takes no abbreviations, and shows an example."""
+
+    def __init__(self, program: str, usage: str, description: str, example: str) -> None:
+        super().__init__(
+            prog=program,
+            usage="\n       ".join(f"{program} {line}" for line in usage.splitlines()),
+            description=description,
+            epilog=f"example:\n  {example}",
+            formatter_class=_HelpFormatter,
+            allow_abbrev=False,
+        )
+
+    def error(self, message: str) -> NoReturn:
+        """Raise `UsageError`."""
+        raise UsageError(message)
+
+
+# ------------------------------------------------------------------------------------------------------------- values
+
+
+def whole(text: str, least: int, most: int) -> int:
+    """The whole number in `text`, from `least` to `most`."""
+    try:
+        value = int(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"must be a whole number, found {text!r}") from None
+    if not least <= value <= most:
+        raise argparse.ArgumentTypeError(f"must lie between {least} and {most}, found {text}")
+    return value
+
+
+def pixels(text: str) -> int:
+    """A picture's width or height."""
+    return whole(text, 1, MAX_SIZE)
+
+
+def position(text: str) -> int:
+    """A pixel's column or row."""
+    return whole(text, 0, MAX_SIZE - 1)
+
+
+def finite(text: str) -> float:
+    """A finite number."""
+    try:
+        value = float(text)
+    except ValueError:
+        raise argparse.ArgumentTypeError(f"must be a number, found {text!r}") from None
+    if not math.isfinite(value):
+        raise argparse.ArgumentTypeError(f"must be finite, found {text!r}")
+    return value
+
+
+def not_negative(text: str) -> float:
+    """A finite number that is not negative."""
+    value = finite(text)
+    if value < 0:
+        raise argparse.ArgumentTypeError(f"must not be negative, found {text}")
+    return value
+
+
+def _color(text: str) -> Color:
+    parts = text.split(",")
+    if len(parts) != 3:
+        raise argparse.ArgumentTypeError(f"must be three numbers with commas between them, found {text!r}")
+    red, green, blue = map(finite, parts)
+    return (red, green, blue)
+
+
+def _samples(text: str) -> int:
+    count = whole(text, 1, MAX_SAMPLES)
+    root = math.isqrt(count)
+    if root * root != count:
+        raise argparse.ArgumentTypeError(
+            f"must be a square number such as {root**2} or {(root + 1) ** 2}, found {text}"
+        )
+    return count
+
+
+def _depth(text: str) -> int:
+    return whole(text, 0, MAX_DEPTH)
+
+
+def _seed(text: str) -> int:
+    return whole(text, 0, 2**32 - 1)
+
+
+def _threads(text: str) -> int:
+    return whole(text, 0, MAX_THREADS)
+
+
+# ------------------------------------------------------------------------------------------------------------- groups
+
+
+def add_size(parser: argparse.ArgumentParser) -> None:
+    """WIDTH and HEIGHT, at the end of the line."""
+    parser.add_argument("width", nargs="?", type=pixels, metavar="WIDTH", help="columns of the picture (800)")
+    parser.add_argument("height", nargs="?", type=pixels, metavar="HEIGHT", help="rows of the picture (600)")
+
+
+def add_reading_options(parser: argparse.ArgumentParser, picture: bool = True) -> None:
+    """Options that say how a scene is read, those too that matter only to a `picture` of it, unless that is false."""
+    group = parser.add_argument_group("how the scene is read")
+    if picture:
+        _add_picture_options(group)
+    group.add_argument(
+        "--ior",
+        choices=("auto", "ratio", "index"),
+        default=DEFAULTS.ior,
+        help="what a finish's ior is: n1/n2, as the statement says, n2/n1, or n2/n1 where it is above 1 (%(default)s)",
+    )
+    group.add_argument(
+        "--background", type=_color, metavar="R,G,B", help="colour of rays that hit nothing (the ambient light's)"
+    )
+    group.add_argument(
+        "--cutoff",
+        type=not_negative,
+        default=DEFAULTS.cutoff,
+        metavar="W",
+        help="drop rays that weigh less, the product of their kr and kt (1/512)",
+    )
+    group.add_argument(
+        "--max-depth",
+        type=_depth,
+        metavar="N",
+        help="follow a ray for at most N bounces (as many as the scene needs for --cutoff to act)",
+    )
+
+
+def _add_picture_options(group: argparse._ArgumentGroup) -> None:
+    group.add_argument(
+        "--pixel",
+        choices=("corner", "center"),
+        default=DEFAULTS.pixel,
+        help="where in a pixel its ray passes: its top-left corner or its centre (%(default)s)",
+    )
+    group.add_argument(
+        "--specular",
+        choices=("phong", "blinn"),
+        default=DEFAULTS.specular,
+        help="highlights by the mirror direction or by the half vector (%(default)s)",
+    )
+    group.add_argument(
+        "--samples",
+        type=_samples,
+        default=DEFAULTS.samples,
+        metavar="N",
+        help="rays a pixel, a square number (%(default)s)",
+    )
+
+
+def add_running_options(parser: argparse.ArgumentParser) -> None:
+    """Options that say how the machine is used."""
+    group = parser.add_argument_group("how it is drawn")
+    group.add_argument(
+        "--threads", type=_threads, default=DEFAULTS.threads, metavar="N", help="worker threads (one a core)"
+    )
+    group.add_argument(
+        "--seed",
+        type=_seed,
+        default=DEFAULTS.seed,
+        metavar="N",
+        help="start of the random numbers, in scenes that use any (%(default)s)",
+    )
+
+
+def settings_from(arguments: argparse.Namespace) -> Settings:
+    """The settings that the arguments ask for; what a command has no argument for keeps its default.
+
+    Raises:
+        UsageError: a width without a height.
+
+    """
+    given = vars(arguments)
+    if (given.get("width") is None) != (given.get("height") is None):
+        raise UsageError("a WIDTH needs a HEIGHT after it")
+    known = {f.name for f in fields(Settings)}
+    return Settings(**{name: value for name, value in given.items() if name in known and value is not None})

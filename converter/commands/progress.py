@@ -1,0 +1,49 @@
+"""A progress bar on stderr, for pictures that take their time and a terminal that shows it."""
+
+import sys
+import time
+from types import TracebackType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from rich.progress import Progress
+
+PATIENCE = 1.0
+"""Seconds before a bar appears: most pictures are done by then, and the bar's library takes a tenth to import."""
+
+
+class ProgressBar:
+    """Called with the finished share of a picture (0..1), a `Progress` as renderers take one; closed by `with`."""
+
+    def __init__(self, what: str, quiet: bool = False) -> None:
+        self._what = what
+        self._started = time.monotonic()
+        self._wanted = not quiet and sys.stderr is not None and sys.stderr.isatty()
+        self._bar: Progress | None = None
+
+    def __call__(self, share: float) -> None:
+        """Show that `share` of the picture is finished."""
+        if self._bar is None and self._wanted and share < 1 and time.monotonic() - self._started >= PATIENCE:
+            self._bar = self._appear()
+        if self._bar is not None:
+            self._bar.update(self._bar.task_ids[0], completed=share)
+
+    def __enter__(self) -> "ProgressBar":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        if self._bar is not None:
+            self._bar.stop()
+            self._bar = None
+
+    def _appear(self) -> "Progress":
+        from rich.console import Console
+        from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
+
+        columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
+        bar = Progress(*columns, console=Console(stderr=True), transient=True)
+        bar.add_task(self._what.replace("[", r"\["), total=1.0)
+        bar.start()
+        return bar

@@ -1,0 +1,74 @@
+"""`raytrace SCENE OUT [WIDTH HEIGHT]`: the program that the course's statement asks for, drawn by the native tracer."""
+
+import sys
+from collections.abc import Sequence
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from converter.commands.options import Parser
+    from converter.scene.settings import Settings
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """Run `raytrace` with these arguments, the process's own by default; return its exit status."""
+    from converter.commands.exits import run
+
+    words = list(sys.argv[1:] if argv is None else argv)
+    return run("raytrace", lambda: _dispatch(words))
+
+
+def parser() -> "Parser":
+    """The program's arguments."""
+    from converter.commands.options import Parser, add_size
+
+    result = Parser(
+        "raytrace",
+        "SCENE OUT [WIDTH HEIGHT]",
+        "Draws a scene of the course with the native tracer, in double precision.\n"
+        "For everything else there is `whitted`.",
+        "raytrace figure1.in figure2.ppm 600 450",
+    )
+    result.add_argument("scene", metavar="SCENE", help="the scene file")
+    result.add_argument("out", metavar="OUT", help="the picture: .png, .exr, ... as its ending says, else PPM")
+    add_size(result)
+    result.add_argument("-V", "--version", action="store_true", help="show the version and exit")
+    return result
+
+
+def _dispatch(words: list[str]) -> int:
+    from converter.commands.exits import OK
+
+    if words[:1] in (["-V"], ["--version"]):
+        from converter.commands.version import version
+
+        print(f"raytrace {version()}")
+        return OK
+    from pathlib import Path
+
+    from converter.commands.options import settings_from
+
+    arguments = parser().parse_args(words)
+    _draw(Path(arguments.scene), Path(arguments.out), settings_from(arguments))
+    return OK
+
+
+def _draw(scene: "Path", out: "Path", settings: "Settings") -> None:
+    from converter.commands.drawing import draw
+    from converter.images.write import COMMON_ENDINGS
+    from converter.renderers.native import NativeRenderer
+
+    if out.suffix.lower() in (*COMMON_ENDINGS, ".jpeg", ".tiff"):
+        draw(NativeRenderer(), scene, out, settings)
+        return
+    # The statement asks for a PPM file, whatever its name; `write_image` goes by the ending.
+    if out.is_dir():
+        raise IsADirectoryError(None, "this is a folder", str(out))
+    named = out.with_name(f".{out.name}.ppm")
+    draw(NativeRenderer(), scene, named, settings)
+    named.replace(out)
+
+
+if __name__ == "__main__":
+    sys.exit(main())

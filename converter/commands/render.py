@@ -1,0 +1,63 @@
+"""`whitted render`: a scene into an image file."""
+
+import argparse
+import sys
+from pathlib import Path
+
+from converter.commands.exits import OK
+from converter.commands.options import Parser, add_reading_options, add_running_options, add_size, settings_from
+from converter.commands.renderers import add_renderer_options, check_renderer_options, make_renderer
+
+
+def parser() -> Parser:
+    """The command's arguments."""
+    result = Parser(
+        "whitted render",
+        "SCENE OUT [WIDTH HEIGHT] [options]",
+        "Draws a scene into an image file: .ppm, .png, or .exr, which keeps the colours unclamped.",
+        "whitted render figure1.in figure2.png 1600 1200 --samples 9",
+    )
+    result.add_argument("scene", type=Path, metavar="SCENE", help="the scene file")
+    result.add_argument("out", type=Path, metavar="OUT", help="the picture; its ending says what kind of file")
+    add_size(result)
+    add_reading_options(result)
+    add_running_options(result)
+    add_renderer_options(result, "what draws (mitsuba)")
+    group = result.add_argument_group("what is told and kept")
+    group.add_argument("-q", "--quiet", action="store_true", help="no notes, no progress bar, no closing line")
+    group.add_argument("--stats", action="store_true", help="print seconds by stage, rays and memory")
+    group.add_argument("--keep-partial", action="store_true", help="on Ctrl-C write what is finished")
+    return result
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Draw the scene."""
+    settings = settings_from(arguments)
+    name = arguments.renderer or "mitsuba"
+    check_renderer_options(arguments, name)
+
+    from converter.commands.drawing import draw
+    from converter.commands.notes import say
+
+    renderer = make_renderer(name, arguments)
+    quiet = arguments.quiet
+    rendering, stages = draw(renderer, arguments.scene, arguments.out, settings, quiet, arguments.keep_partial)
+    seconds = sum(stages.values())
+    say(f"{arguments.out}: {settings.width} x {settings.height}, {renderer.name}, {seconds:.2f} s", quiet)
+    if arguments.stats:
+        from converter.commands.tables import print_table
+
+        rows = [(stage, f"{spent:.4f} s") for stage, spent in stages.items()]
+        rows += [("all", f"{seconds:.4f} s")]
+        rows += [(name.replace("_", " "), str(value)) for name, value in rendering.statistics.items()]
+        rows += [("memory peak", f"{_memory_peak():.0f} MiB")]
+        print_table(rows, align="lr")
+    return OK
+
+
+def _memory_peak() -> float:
+    """Most memory that this process has held at once, in MiB."""
+    import resource
+
+    peak = resource.getrusage(resource.RUSAGE_SELF).ru_maxrss
+    return peak / (1 << 20 if sys.platform == "darwin" else 1 << 10)

@@ -1,0 +1,119 @@
+"""The compiled tracer; `native_tracer` and `native_tracer.halfspaces` are its public faces."""
+
+from collections.abc import Callable, Sequence
+from typing import Any, Literal, TypedDict, overload
+
+from typing_extensions import Buffer
+
+_Triple = Sequence[float]
+_Quadruple = Sequence[float]
+
+class _Statistics(TypedDict):
+    primary: int
+    reflected: int
+    transmitted: int
+    shadow: int
+    deepest: int
+    threads: int
+
+class Scene:
+    """A scene to be built, element by element; indices count from 0."""
+
+    def __init__(self) -> None: ...
+    def set_camera(self, eye: _Triple, look_at: _Triple, up: _Triple, fovy: float) -> None:
+        """The camera; `up` is a vector, `fovy` the full vertical angle in degrees."""
+
+    def set_ambient(self, color: _Triple) -> None:
+        """The ambient light's colour."""
+
+    def set_background(self, color: _Triple) -> None:
+        """The colour of rays that hit nothing."""
+
+    def add_light(self, position: _Triple, color: _Triple, attenuation: _Triple) -> int:
+        """Add a point light, and return its index."""
+
+    def add_solid(self, color: _Triple) -> int:
+        """Add a pigment of one colour, and return its index."""
+
+    def add_checker(self, first: _Triple, second: _Triple, size: float) -> int:
+        """Add a checkerboard pigment, and return its index."""
+
+    def add_texmap(self, width: int, height: int, texels: Buffer, p0: _Quadruple, p1: _Quadruple) -> int:
+        """Add an image pigment, and return its index; `texels` is a buffer of height x width x 3 float32."""
+
+    def add_finish(self, ka: float, kd: float, ks: float, alpha: float, kr: float, kt: float, eta: float) -> int:
+        """Add a finish, and return its index; `eta` is n1/n2, outside over inside."""
+
+    def add_sphere(self, pigment: int, finish: int, center: _Triple, radius: float) -> int:
+        """Add a sphere, and return its index."""
+
+    @overload
+    def add_polyhedron(self, pigment: int, finish: int, planes: Sequence[_Quadruple]) -> int:
+        """Add a convex polyhedron, and return its index.
+
+        A plane is (a, b, c, d), inside where a x + b y + c z + d <= 0. `planes` may be a buffer of float64 too.
+        """
+
+    @overload
+    def add_polyhedron(self, pigment: int, finish: int, planes: Buffer) -> int: ...
+
+class Image:
+    """A picture to be drawn into: linear RGB, row 0 on top, black at first."""
+
+    def __init__(self, width: int, height: int) -> None: ...
+    @property
+    def width(self) -> int: ...
+    @property
+    def height(self) -> int: ...
+    @property
+    def pixels(self) -> memoryview[float]:
+        """A memoryview of height x width x 3 float32, not a copy."""
+
+    @property
+    def statistics(self) -> _Statistics:
+        """Rays of the last rendering by kind, its deepest bounce and its threads."""
+
+def render(
+    scene: Scene,
+    image: Image,
+    *,
+    cutoff: float,
+    max_depth: int,
+    samples: int = 1,
+    corner: bool = True,
+    blinn: bool = False,
+    precision: Literal["float", "double", "long double"] = "double",
+    threads: int = 0,
+    progress: Callable[[float], object] | None = None,
+    instructions: Literal["", "baseline", "avx2", "avx512"] = "",
+) -> None:
+    """Draw `scene` into `image`.
+
+    `progress` is called about 20 times a second with the finished share; what it raises, and Ctrl-C, stop the
+    rendering, and what is finished stays in the image. `instructions` forces an instruction set, "" takes the best.
+    """
+
+def trace_pixel(
+    scene: Scene,
+    width: int,
+    height: int,
+    x: int,
+    y: int,
+    *,
+    cutoff: float,
+    max_depth: int,
+    samples: int = 1,
+    corner: bool = True,
+    blinn: bool = False,
+    precision: Literal["float", "double", "long double"] = "double",
+) -> dict[str, Any]:
+    """The rays of one pixel as nested dictionaries; `converter.renderers.native` describes them."""
+
+def quantize(pixels: Buffer) -> bytes:
+    """8-bit RGB of a float32 buffer: round(255 c), c clamped to 0..1, a NaN black."""
+
+def halfspace_bodies(coefficients: Buffer, offsets: Buffer) -> list[tuple[Any, ...]]:
+    """What is known of each intersection of half-spaces; see `native_tracer.halfspaces`."""
+
+def halfspace_faces(coefficients: Buffer) -> list[tuple[list[int], list[float], float]]:
+    """The face polygons of one bounded intersection; see `native_tracer.halfspaces`."""

@@ -1,0 +1,170 @@
+// Python's view of halfspaces.h. Flat buffers of doubles come in, plain tuples go out, so that NumPy is not needed.
+
+#include <nanobind/nanobind.h>
+#include <nanobind/ndarray.h>
+#include <nanobind/stl/vector.h>
+
+#include <algorithm>
+#include <atomic>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <stdexcept>
+#include <string>
+#include <thread>
+#include <vector>
+
+#include "halfspaces.h"
+
+namespace nb = nanobind;
+
+namespace {
+
+using whitted::halfspaces::Body;
+using whitted::halfspaces::Edge;
+using whitted::halfspaces::Face;
+using whitted::halfspaces::Plane;
+using whitted::halfspaces::Vec;
+
+using Coefficients = nb::ndarray<const double, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+using Offsets = nb::ndarray<const std::int64_t, nb::ndim<1>, nb::c_contig, nb::device::cpu>;
+
+nb::tuple to_tuple(const Vec& v) {
+    return nb::make_tuple(static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z));
+}
+
+std::vector<Plane> read_planes(const Coefficients& coefficients, std::size_t first, std::size_t last) {
+    std::vector<Plane> planes;
+    planes.reserve(last - first);
+    for (std::size_t k = first; k < last; ++k) {
+        const double* c = coefficients.data() + 4 * k;
+        const Plane plane(c[0], c[1], c[2], c[3]);
+        if (!std::isfinite(plane.normal.x) || !std::isfinite(plane.normal.y) || !std::isfinite(plane.normal.z) ||
+            !std::isfinite(plane.offset)) {
+            throw std::invalid_argument("plane " + std::to_string(k - first) +
+                                        " has a zero normal or a coefficient that is not finite");
+        }
+        planes.push_back(plane);
+    }
+    return planes;
+}
+
+std::size_t count_planes(const Coefficients& coefficients) {
+    if (coefficients.size() % 4 != 0) {
+        throw std::invalid_argument("planes have four coefficients each");
+    }
+    return coefficients.size() / 4;
+}
+
+struct Result {
+    Body body;
+    std::vector<int> conflict;
+};
+
+Result examine(const std::vector<Plane>& planes) {
+    std::vector<Face> faces;
+    Result result{whitted::halfspaces::body_of(planes, faces), {}};
+    if (!result.body.solid) {
+        result.conflict = whitted::halfspaces::conflict_of(planes);
+        result.body = {};
+    }
+    return result;
+}
+
+// Calls work(i) for all i below count, from as many threads as are worth starting.
+template <typename Work>
+void for_each_index(std::size_t count, Work work) {
+    constexpr std::size_t share = 256;  // small polyhedra, a few milliseconds
+    const std::size_t thread_count =
+        std::clamp<std::size_t>(count / share, 1, std::max(1U, std::thread::hardware_concurrency()));
+    std::atomic<std::size_t> next = 0;
+    const auto loop = [&] {
+        for (std::size_t i = next++; i < count; i = next++) {
+            work(i);
+        }
+    };
+    std::vector<std::jthread> threads;
+    for (std::size_t i = 1; i < thread_count; ++i) {
+        threads.emplace_back(loop);
+    }
+    loop();
+}
+
+nb::tuple describe(const Result& result) {
+    const Body& body = result.body;
+    return nb::make_tuple(body.solid, body.solid && body.bounded, nb::tuple(nb::cast(body.kept)),
+                          nb::tuple(nb::cast(body.redundant)), to_tuple(body.low), to_tuple(body.high),
+                          to_tuple(body.inside), nb::tuple(nb::cast(result.conflict)));
+}
+
+nb::list bodies(const Coefficients& coefficients, const Offsets& offsets) {
+    const std::size_t count = count_planes(coefficients);
+    std::vector<std::vector<Plane>> polyhedra;
+    for (std::size_t i = 0; i + 1 < offsets.size(); ++i) {
+        const std::int64_t first = offsets(i);
+        const std::int64_t last = offsets(i + 1);
+        if (first < 0 || last < first || static_cast<std::size_t>(last) > count) {
+            throw std::invalid_argument("offsets have to ascend, from 0 to the number of planes at most");
+        }
+        polyhedra.push_back(read_planes(coefficients, static_cast<std::size_t>(first), static_cast<std::size_t>(last)));
+    }
+    std::vector<Result> results(polyhedra.size());
+    {
+        const nb::gil_scoped_release others_may_run;
+        for_each_index(results.size(), [&](std::size_t i) { results[i] = examine(polyhedra[i]); });
+    }
+    nb::list list;
+    for (const Result& result : results) {
+        list.append(describe(result));
+    }
+    return list;
+}
+
+// The edges of one face: neighbours, and three coordinates of where each edge begins.
+nb::tuple describe(const Face& face, const std::vector<int>& kept) {
+    std::vector<int> neighbors;
+    std::vector<double> points;
+    for (const Edge& edge : face.edges()) {
+        const Vec p = face.at(edge, edge.low);
+        neighbors.push_back(kept[static_cast<std::size_t>(edge.neighbor)]);
+        points.insert(points.end(), {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
+    }
+    return nb::make_tuple(nb::cast(neighbors), nb::cast(points), static_cast<double>(face.area()));
+}
+
+nb::list faces(const Coefficients& coefficients) {
+    const std::vector<Plane> all = read_planes(coefficients, 0, count_planes(coefficients));
+    std::vector<Face> faces;
+    const Body body = whitted::halfspaces::body_of(all, faces);
+    nb::list list;
+    if (!body.solid || !body.bounded) {
+        return list;
+    }
+    std::vector<Plane> planes;
+    for (const int k : body.kept) {
+        planes.push_back(all[static_cast<std::size_t>(k)]);
+    }
+    if (planes.size() < all.size()) {
+        // Once more without the planes that only touch the body: then every edge has its two proper neighbours.
+        faces = whitted::halfspaces::faces_of(planes);
+        if (!std::all_of(faces.begin(), faces.end(), [](const Face& f) { return f.finite() && !f.empty(); })) {
+            return list;  // it is those planes' roundings that bound the body
+        }
+    }
+    for (std::size_t k = 0; k < all.size(); ++k) {
+        list.append(nb::make_tuple(nb::list(), nb::list(), 0.0));
+    }
+    for (std::size_t k = 0; k < planes.size(); ++k) {
+        list[static_cast<std::size_t>(body.kept[k])] = describe(faces[k], body.kept);
+    }
+    return list;
+}
+
+}  // namespace
+
+void bind_halfspaces(nb::module_& m) {
+    m.def("halfspace_bodies", &bodies, nb::arg("coefficients"), nb::arg("offsets"),
+          "What is known of each intersection of half-spaces; see native_tracer.halfspaces.");
+    m.def("halfspace_faces", &faces, nb::arg("coefficients"),
+          "The face polygons of one bounded intersection; see native_tracer.halfspaces.");
+}

@@ -1,0 +1,9 @@
+// The parts of the Python module native_tracer._core.
+
+#pragma once
+
+#include <nanobind/nanobind.h>
+
+void bind_scene(nanobind::module_& module);
+void bind_render(nanobind::module_& module);
+void bind_halfspaces(nanobind::module_& module);

@@ -1,0 +1,52 @@
+// The pinhole camera.
+
+#pragma once
+
+#include <cmath>
+#include <numbers>
+
+#include "description.h"
+#include "vector.h"
+
+namespace whitted::WHITTED_ISA {
+
+template <typename Real>
+Vector<Real> vector_of(const Triple& v) {
+    return {static_cast<Real>(v[0]), static_cast<Real>(v[1]), static_cast<Real>(v[2])};
+}
+
+// In double, before any of the two is rounded.
+inline Triple difference(const Triple& a, const Triple& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+
+//     forward = normalize(look_at - eye), right = normalize(forward x up), up' = right x forward
+//
+// The file's `up` is a vector that only has to lie on the right side; up' is orthogonal to the view direction.
+template <typename Real>
+class Camera {
+ public:
+    Camera(const CameraDescription& camera, int width, int height)
+        : eye_(vector_of<Real>(camera.eye)),
+          forward_(normalize(vector_of<Real>(difference(camera.look_at, camera.eye)))),
+          right_(normalize(cross(forward_, vector_of<Real>(camera.up)))),
+          up_(cross(right_, forward_)),
+          tangent_(std::tan(static_cast<Real>(camera.fovy) * std::numbers::pi_v<Real> / 360)),
+          width_(static_cast<Real>(width)),
+          height_(static_cast<Real>(height)) {}
+
+    const Vector<Real>& eye() const { return eye_; }
+
+    // Unit directions through points of the picture, in pixels from its top-left corner. On the plane at distance 1 the
+    // window is 2 tan(fovy/2) high, and as wide as square pixels make it.
+    Vector<Lanes<Real>> directions(Lanes<Real> column, Lanes<Real> row) const {
+        using L = Lanes<Real>;
+        const L x = (L(2) * column / L(width_) - L(1)) * L(tangent_ * width_ / height_);
+        const L y = (L(1) - L(2) * row / L(height_)) * L(tangent_);
+        return normalize(Vector<L>(forward_) + x * Vector<L>(right_) + y * Vector<L>(up_));
+    }
+
+ private:
+    Vector<Real> eye_, forward_, right_, up_;
+    Real tangent_, width_, height_;
+};
+
+}  // namespace whitted::WHITTED_ISA

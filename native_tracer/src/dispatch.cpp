@@ -1,0 +1,43 @@
+// Picks the copy of kernel.cpp that suits the processor.
+
+#include <stdexcept>
+#include <string>
+
+#include "kernel.h"
+
+namespace whitted {
+
+namespace {
+
+using Make = Kernel* (*)(const SceneDescription&, const RenderSettings&);
+
+struct Variant {
+    std::string_view name;
+    bool available;
+    Make make;
+};
+
+}  // namespace
+
+// Here, so that no compilation for a newer processor provides them.
+Kernel::~Kernel() = default;
+
+std::unique_ptr<Kernel> make_kernel(const SceneDescription& scene, const RenderSettings& settings,
+                                    std::string_view instructions) {
+    // The best first.
+    const Variant variants[] = {
+#if defined(WHITTED_X86_VARIANTS)
+        {"avx512", __builtin_cpu_supports("x86-64-v4") != 0, avx512::make_kernel},
+        {"avx2", __builtin_cpu_supports("x86-64-v3") != 0, avx2::make_kernel},
+#endif
+        {"baseline", true, baseline::make_kernel},
+    };
+    for (const Variant& variant : variants) {
+        if (variant.available && (instructions.empty() || instructions == variant.name)) {
+            return std::unique_ptr<Kernel>(variant.make(scene, settings));
+        }
+    }
+    throw std::invalid_argument("this processor or this build has no '" + std::string(instructions) + "' instructions");
+}
+
+}  // namespace whitted

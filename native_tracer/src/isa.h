@@ -1,0 +1,11 @@
+// The namespace of everything that is compiled once for each instruction set.
+//
+// kernel.cpp and the headers that it includes (lanes.h to trace.h) are compiled several times, for older and newer
+// x86-64 processors, and the program picks one copy when it runs. Each copy lives in a namespace of its own: the linker
+// keeps only one of several functions with the same name, and it must never keep an AVX2 one for a processor without.
+
+#pragma once
+
+#ifndef WHITTED_ISA
+#define WHITTED_ISA baseline
+#endif

@@ -1,0 +1,51 @@
+// The tracer behind one interface, whatever the precision and the instruction set it was compiled for.
+
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string_view>
+
+#include "description.h"
+#include "ray_tree.h"
+
+namespace whitted {
+
+// A rectangle of pixels, up to but excluding `right` and `bottom`.
+struct Tile {
+    int left, top, right, bottom;
+};
+
+inline constexpr int tile_size = 32;
+
+class Kernel {
+ public:
+    virtual ~Kernel();
+
+    // Draws a tile into `picture`, which holds the whole picture, height x width x 3. Returns false, with the tile
+    // untouched, if it was stopped. May be called from several threads at once.
+    virtual bool trace_tile(const Tile& tile, float* picture, RayCounts& counts,
+                            const std::atomic<bool>& stop) const = 0;
+
+    // Traces one pixel, with its rays put into `tree` and its colour, as trace_tile would leave it, into `color`.
+    virtual void trace_pixel(int column, int row, float* color, RayTree& tree) const = 0;
+};
+
+// `instructions` is "baseline", "avx2" or "avx512"; empty: the best that this processor has. Throws
+// std::invalid_argument if it has not, or if the program was not compiled for it. The kernel refers to the
+// description's textures and must not outlive it.
+std::unique_ptr<Kernel> make_kernel(const SceneDescription& scene, const RenderSettings& settings,
+                                    std::string_view instructions = {});
+
+// Each is kernel.cpp, compiled for one instruction set.
+namespace baseline {
+Kernel* make_kernel(const SceneDescription& scene, const RenderSettings& settings);
+}
+namespace avx2 {
+Kernel* make_kernel(const SceneDescription& scene, const RenderSettings& settings);
+}
+namespace avx512 {
+Kernel* make_kernel(const SceneDescription& scene, const RenderSettings& settings);
+}
+
+}  // namespace whitted

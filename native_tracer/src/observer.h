@@ -1,0 +1,153 @@
+// Who watches the tracer: nobody while a picture is rendered, and a recorder when one pixel is to be explained.
+//
+// The tracer is a template over its observer, so that both run the same code, and watching costs a rendering nothing.
+
+#pragma once
+
+#include <cstddef>
+
+#include "ray.h"
+#include "ray_tree.h"
+#include "scene.h"
+#include "vector.h"
+
+namespace whitted::WHITTED_ISA {
+
+struct Unobserved {
+    static constexpr bool observes = false;
+
+    template <typename... Arguments>
+    void primary(Arguments&...) {}
+    template <typename... Arguments>
+    void surface(const Arguments&...) {}
+    template <typename... Arguments>
+    void light(const Arguments&...) {}
+    template <typename... Arguments>
+    void dropped(const Arguments&...) {}
+    template <typename... Arguments>
+    void total_reflection(const Arguments&...) {}
+    template <typename... Arguments>
+    void color(const Arguments&...) {}
+    template <typename... Arguments>
+    int spawned(const Arguments&...) {
+        return 0;
+    }
+};
+
+class Recorder {
+ public:
+    static constexpr bool observes = true;
+
+    explicit Recorder(RayTree& tree) : tree_(tree) {}
+
+    // The group's rays are primary ones, about to be traced.
+    template <typename Real>
+    void primary(Group<Real>& group) {
+        for (int lane = 0; lane < group.count; ++lane) {
+            group.record[lane] = add(RayKind::primary, -1, 0, group.weight[lane], lane_of(group.rays.origin, lane),
+                                     lane_of(group.rays.direction, lane));
+        }
+    }
+
+    // A ray follows from the one with the record `parent`; returns its own record.
+    template <typename Real>
+    int spawned(RayKind kind, int parent, const PendingRay<Real>& ray) {
+        successor(parent, kind) = Successor::traced;
+        return add(kind, parent, ray.depth, ray.weight, ray.origin, ray.direction);
+    }
+
+    template <typename Real>
+    void surface(const Group<Real>& group, const Scene<Real>& scene, const Hits<Real>& hits,
+                 const Surface<Real>& surface) {
+        for_each(group, surface.hit, [&](int lane, int index) {
+            RayRecord& record = tree_[index];
+            record.t = static_cast<double>(hits.t[lane]);
+            record.object = hits.object[lane];
+            if (!scene.patches[static_cast<std::size_t>(hits.patch[lane])].round) {
+                record.plane = hits.patch[lane] - scene.objects[static_cast<std::size_t>(record.object)].first_patch;
+            }
+            record.inside = hits.inside[lane];
+            record.point = triple(lane_of(surface.point, lane));
+            record.normal = triple(lane_of(surface.outward, lane));
+            record.pigment = triple(lane_of(surface.pigment, lane));
+        });
+    }
+
+    template <typename Real>
+    void light(const Group<Real>& group, std::size_t light, const Surface<Real>& surface, Mask<Real> lit,
+               Indices<Real> blocker, Lanes<Real> cosine, Lanes<Real> attenuation, const Color<Lanes<Real>>& diffuse,
+               const Color<Lanes<Real>>& specular) {
+        const Mask<Real> answers = (surface.kd > Lanes<Real>(0)) | (surface.ks > Lanes<Real>(0));
+        for_each(group, surface.hit & answers, [&](int lane, int index) {
+            LightRecord record{static_cast<int>(light),
+                               static_cast<double>(cosine[lane]),
+                               static_cast<double>(attenuation[lane]),
+                               blocker[lane],
+                               {},
+                               {}};
+            if (lit[lane]) {
+                record.diffuse = triple(lane_of(diffuse, lane));
+                record.specular = triple(lane_of(specular, lane));
+            }
+            tree_.add_light(index, record);
+        });
+    }
+
+    // Of the successors that are `wanted`, those that are not both weighty and shallow are not traced.
+    template <typename Real>
+    void dropped(const Group<Real>& group, RayKind kind, Mask<Real> wanted, Mask<Real> weighty, Mask<Real> shallow) {
+        for_each(group, wanted & ~(weighty & shallow), [&](int lane, int index) {
+            successor(index, kind) = weighty[lane] ? Successor::too_deep : Successor::below_cutoff;
+        });
+    }
+
+    template <typename Real>
+    void total_reflection(const Group<Real>& group, Mask<Real> total) {
+        for_each(group, total, [&](int, int index) { tree_[index].total_reflection = true; });
+    }
+
+    // The rays' colours, without those of their successors.
+    template <typename Real>
+    void color(const Group<Real>& group, const Color<Lanes<Real>>& color) {
+        for_each(group, group.active, [&](int lane, int index) { tree_[index].local = triple(lane_of(color, lane)); });
+    }
+
+ private:
+    // Calls visit(lane, record) for the group's rays that are among `rays`.
+    template <typename Real, typename Visit>
+    void for_each(const Group<Real>& group, Mask<Real> rays, Visit visit) {
+        for (int lane = 0; lane < group.count; ++lane) {
+            if (rays[lane]) {
+                visit(lane, group.record[lane]);
+            }
+        }
+    }
+
+    template <typename Real>
+    int add(RayKind kind, int parent, int depth, Real weight, const Vector<Real>& origin,
+            const Vector<Real>& direction) {
+        const int index = tree_.add();
+        RayRecord& record = tree_[index];
+        record.kind = kind;
+        record.parent = parent;
+        record.depth = depth;
+        record.weight = static_cast<double>(weight);
+        record.origin = triple(origin);
+        record.direction = triple(direction);
+        return index;
+    }
+
+    Successor& successor(int index, RayKind kind) {
+        RayRecord& record = tree_[index];
+        return kind == RayKind::reflected ? record.reflected : record.transmitted;
+    }
+
+    template <typename Real>
+    static Triple triple(const Vector<Real>& v) {
+        return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+    }
+
+    RayTree& tree_;
+};
+
+}  // namespace whitted::WHITTED_ISA

@@ -1,0 +1,310 @@
+// Whitted's recursive shading, with the recursion turned into a stack of pending rays.
+//
+//     colour = ka ambient C
+//            + sum over lights in sight with n.l > 0 of  light / (a + b d + c d^2) (kd C (n.l) + ks highlight^alpha)
+//            + kr colour(reflected ray) + kt colour(transmitted ray)
+//
+// A pixel is a sum over its tree of rays: each adds its local colour, times its weight, the product of the kr and kt on
+// the way to it. So a ray needs nothing from its successors, and may be traced whenever it suits: rays wait on a stack
+// and are taken from it in batches, whatever pixel they belong to, so that all lanes of a register are busy. The stack
+// stays short however large the trees are, for the deepest rays lie on top.
+//
+// Whitted, "An Improved Illumination Model for Shaded Display", Communications of the ACM 23(6), 1980.
+
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+#include <vector>
+
+#include "description.h"
+#include "observer.h"
+#include "ray.h"
+#include "scene.h"
+#include "vector.h"
+
+namespace whitted::WHITTED_ISA {
+
+template <typename Real, typename Observer>
+class Tracer {
+ public:
+    using L = Lanes<Real>;
+    // The rays of a pixel are summed in double at least.
+    using Sum = std::conditional_t<std::is_same_v<Real, long double>, long double, double>;
+
+    Tracer(const Scene<Real>& scene, const RenderSettings& settings, Observer& observer)
+        : scene_(scene),
+          observer_(observer),
+          cutoff_(static_cast<Real>(settings.cutoff)),
+          max_depth_(settings.max_depth),
+          blinn_(settings.blinn) {}
+
+    // Traces `primary_rays` with all that follow from them, and adds their colours to sums[pixel]. Returns false if it
+    // was stopped before the end.
+    template <typename PrimaryRays>
+    bool trace(PrimaryRays primary_rays, Color<Sum>* sums, RayCounts& counts, const std::atomic<bool>& stop);
+
+ private:
+    // The batch, not the number of lanes, decides which rays are traced next, so that the rays of a pixel are summed in
+    // the same order on every processor.
+    static constexpr std::size_t batch_size = 64;
+
+    void trace_group(const Group<Real>& group);
+    Surface<Real> surface_at(const Rays<Real>& rays, const Hits<Real>& hits) const;
+    Color<L> local_color(const Group<Real>& group, const Hits<Real>& hits, const Surface<Real>& surface);
+    L highlight(const Rays<Real>& rays, const Hits<Real>& hits, const Surface<Real>& surface, const Vector<L>& to_light,
+                L cosine, Mask<Real> wanted) const;
+    void follow(const Group<Real>& group, const Hits<Real>& hits, const Surface<Real>& surface);
+    Mask<Real> worthwhile(const Group<Real>& group, RayKind kind, Mask<Real> hit, L weight);
+
+    const Scene<Real>& scene_;
+    Observer& observer_;
+    const Real cutoff_;
+    const int max_depth_;
+    const bool blinn_;
+
+    std::vector<PendingRay<Real>> pending_;
+    Color<Sum>* sums_ = nullptr;
+    RayCounts* counts_ = nullptr;
+};
+
+template <typename Real, typename Observer>
+template <typename PrimaryRays>
+bool Tracer<Real, Observer>::trace(PrimaryRays primary_rays, Color<Sum>* sums, RayCounts& counts,
+                                   const std::atomic<bool>& stop) {
+    sums_ = sums;
+    counts_ = &counts;
+    pending_.clear();
+    while (!stop.load(std::memory_order_relaxed)) {
+        Group<Real> group;
+        if (pending_.size() < batch_size && primary_rays.next(group)) {
+            std::size_t traced = 0;
+            do {
+                counts.primary += static_cast<std::uint64_t>(group.count);
+                observer_.primary(group);
+                trace_group(group);
+                traced += static_cast<std::size_t>(group.count);
+            } while (traced < batch_size && primary_rays.next(group));
+        } else if (!pending_.empty()) {
+            // All are taken off the stack before the first of them puts its successors there.
+            Group<Real> batch[batch_size / lane_count<Real>];
+            const std::size_t size = std::min(pending_.size(), batch_size);
+            const PendingRay<Real>* const first = pending_.data() + (pending_.size() - size);
+            std::size_t groups = 0;
+            for (std::size_t taken = 0; taken < size; taken += lane_count<Real>) {
+                batch[groups++].take(first + taken, size - taken);
+            }
+            pending_.resize(pending_.size() - size);
+            for (std::size_t i = 0; i < groups; ++i) {
+                trace_group(batch[i]);
+            }
+        } else {
+            return true;
+        }
+    }
+    return false;
+}
+
+// Traces a ray in each lane, and leaves those that follow from them on the stack.
+template <typename Real, typename Observer>
+void Tracer<Real, Observer>::trace_group(const Group<Real>& group) {
+    const Hits<Real> hits = scene_.nearest_hit(group.rays);
+    Color<L> color(scene_.background);
+    if (any(group.active & (hits.object >= 0))) {
+        const Surface<Real> surface = surface_at(group.rays, hits);
+        observer_.surface(group, scene_, hits, surface);
+        color = select(surface.hit, local_color(group, hits, surface), color);
+        follow(group, hits, surface);
+    }
+    observer_.color(group, color);
+    const Color<L> weighted = group.weight * color;
+    for (int lane = 0; lane < group.count; ++lane) {
+        sums_[group.pixel[lane]] += Color<Sum>(lane_of(weighted, lane));
+    }
+}
+
+template <typename Real, typename Observer>
+Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const Hits<Real>& hits) const {
+    const Vector<L> p = rays.origin + hits.t * rays.direction;
+    const Mask<Real> hit = hits.object >= 0;
+
+    // Neighbouring rays mostly hit the same patch: then there is nothing to select.
+    Surface<Real> result, another;
+    bool first = true;
+    for_each_distinct(hits.patch, hit, [&](int index, int lane, Mask<Real> same) {
+        const Patch<Real>& patch = scene_.patches[static_cast<std::size_t>(index)];
+        const Object<Real>& object = scene_.objects[static_cast<std::size_t>(hits.object[lane])];
+        Surface<Real>& surface = first ? result : another;
+        surface.hit = hit;
+
+        // The point is moved onto the surface, so that its error does not grow with the distance travelled.
+        const Vector<L> anchor(patch.anchor);
+        const L size = patch.size;
+        if (patch.round) {
+            surface.outward = normalize(p - anchor);
+            surface.point = anchor + size * surface.outward;
+        } else {
+            surface.outward = anchor;
+            surface.point = p - (dot(anchor, p) + size) * anchor;
+        }
+        surface.normal = select(hits.inside, -surface.outward, surface.outward);
+        surface.error = rounding_error(surface.point, hits.t);
+
+        surface.pigment = color_at(*object.pigment, surface.point);
+        const Finish<Real>& finish = object.finish;
+        surface.ka = finish.ka;
+        surface.kd = finish.kd;
+        surface.ks = finish.ks;
+        surface.alpha = finish.alpha;
+        surface.kr = finish.kr;
+        surface.kt = finish.kt;
+        surface.eta = finish.eta;
+
+        if (!first) {
+            result = select(same, another, result);
+        }
+        first = false;
+    });
+    return result;
+}
+
+// ---- Local colour -------------------------------------------------------------------------------------------------
+
+template <typename Real, typename Observer>
+auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Real>& hits, const Surface<Real>& surface)
+    -> Color<L> {
+    const L zero = Real(0);
+    const L one = Real(1);
+    Color<L> color = surface.ka * Color<L>(scene_.ambient) * surface.pigment;
+    const Mask<Real> answers = group.active & surface.hit & ((surface.kd > zero) | (surface.ks > zero));
+    if (!any(answers)) {
+        return color;
+    }
+    // Shadow rays start on the viewer's side of the surface, as the reflected ray does.
+    Rays<Real> shadow_rays{surface.point, surface.normal, surface.error, hits.object, hits.patch, hits.inside};
+    for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
+        const Light<Real>& light = scene_.lights[i];
+        const Vector<L> path = Vector<L>(light.position) - surface.point;
+        const L distance = length(path);
+        const Vector<L> to_light = path * (one / distance);
+        const L cosine = dot(surface.normal, to_light);
+        const Mask<Real> faces = answers & (cosine > zero);
+
+        Indices<Real> blocker = -1;
+        if (any(faces)) {
+            counts_->shadow += static_cast<std::uint64_t>(count(faces));
+            shadow_rays.direction = to_light;
+            blocker = scene_.blocker(shadow_rays, distance, faces);
+        }
+        const Mask<Real> lit = faces & (blocker < 0);
+        if (!Observer::observes && !any(lit)) {
+            continue;
+        }
+        const L attenuation = L(light.a) + L(light.b) * distance + L(light.c) * distance * distance;
+        const Color<L> intensity = Color<L>(light.color) * (one / attenuation);
+        const Color<L> diffuse = surface.kd * cosine * surface.pigment * intensity;
+        color = select(lit, color + diffuse, color);
+        const Mask<Real> shines = lit & (surface.ks > zero);
+        Color<L> specular{zero, zero, zero};
+        if (any(shines)) {
+            specular = surface.ks * highlight(group.rays, hits, surface, to_light, cosine, shines) * intensity;
+            color = select(shines, color + specular, color);
+        }
+        observer_.light(group, i, surface, lit, blocker, cosine, attenuation, diffuse, specular);
+    }
+    return color;
+}
+
+// Phong's max(0, r.v)^alpha or Blinn's max(0, n.h)^alpha, for the rays in `wanted`.
+template <typename Real, typename Observer>
+auto Tracer<Real, Observer>::highlight(const Rays<Real>& rays, const Hits<Real>& hits, const Surface<Real>& surface,
+                                       const Vector<L>& to_light, L cosine, Mask<Real> wanted) const -> L {
+    const Vector<L> to_viewer = -rays.direction;
+    const L base = blinn_ ? dot(surface.normal, normalize(to_light + to_viewer))
+                          : dot(L(2) * cosine * surface.normal - to_light, to_viewer);
+    L result = Real(0);
+    for_each_distinct(hits.patch, wanted, [&](int, int lane, Mask<Real> same) {
+        result = select(same, power(max(base, L(Real(0))), surface.alpha[lane]), result);
+    });
+    return result;
+}
+
+// ---- Successors ---------------------------------------------------------------------------------------------------
+
+template <typename Real, typename Observer>
+void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& hits, const Surface<Real>& surface) {
+    const Mask<Real> hit = group.active & surface.hit;
+    const L reflected_weight = group.weight * surface.kr;
+    const L transmitted_weight = group.weight * surface.kt;
+    const Mask<Real> reflects = worthwhile(group, RayKind::reflected, hit, reflected_weight);
+    const Mask<Real> transmits = worthwhile(group, RayKind::transmitted, hit, transmitted_weight);
+    if (!any(reflects | transmits)) {
+        return;
+    }
+    const L zero = Real(0);
+    const L one = Real(1);
+    const Vector<L>& direction = group.rays.direction;
+    const L cosine = -dot(direction, surface.normal);
+    const Vector<L> mirrored = normalize(direction + L(2) * cosine * surface.normal);
+
+    Vector<L> bent = mirrored;
+    Mask<Real> bent_inside = hits.inside;
+    if (any(transmits)) {
+        // Snell's law, with the ratio of the index on the ray's side to the index on the other: n1/n2 on the way in,
+        // n2/n1 on the way out. Where it has no answer, the transmitted ray follows the mirror direction.
+        const L eta = select(hits.inside, one / surface.eta, surface.eta);
+        const L cosine2 = one - eta * eta * (one - cosine * cosine);
+        const Mask<Real> total = cosine2 < zero;
+        const Vector<L> refracted =
+            normalize(eta * direction + (eta * cosine - sqrt(max(cosine2, zero))) * surface.normal);
+        bent = select(total, mirrored, refracted);
+        bent_inside = select(total, hits.inside, ~hits.inside);
+        observer_.total_reflection(group, transmits & total);
+    }
+
+    const auto push = [&](int lane, RayKind kind, const Vector<L>& along, L weight, bool inside) {
+        PendingRay<Real>& ray = pending_.emplace_back();
+        ray.origin = lane_of(surface.point, lane);
+        ray.direction = lane_of(along, lane);
+        ray.t_min = surface.error[lane];
+        ray.weight = weight[lane];
+        ray.object = hits.object[lane];
+        ray.patch = hits.patch[lane];
+        ray.depth = group.depth[lane] + 1;
+        ray.pixel = group.pixel[lane];
+        ray.inside = inside;
+        ray.record = observer_.spawned(kind, group.record[lane], ray);
+        counts_->deepest = std::max(counts_->deepest, ray.depth);
+    };
+    counts_->reflected += static_cast<std::uint64_t>(count(reflects));
+    counts_->transmitted += static_cast<std::uint64_t>(count(transmits));
+    for (unsigned lanes = (reflects | transmits).bits(); lanes != 0; lanes &= lanes - 1) {
+        const int lane = std::countr_zero(lanes);
+        if (reflects[lane]) {
+            push(lane, RayKind::reflected, mirrored, reflected_weight, hits.inside[lane]);
+        }
+        if (transmits[lane]) {
+            push(lane, RayKind::transmitted, bent, transmitted_weight, bent_inside[lane]);
+        }
+    }
+}
+
+// Which of the rays that would follow, with the given weights, are traced.
+template <typename Real, typename Observer>
+Mask<Real> Tracer<Real, Observer>::worthwhile(const Group<Real>& group, RayKind kind, Mask<Real> hit, L weight) {
+    const Mask<Real> wanted = hit & (weight > L(0));
+    if (!any(wanted)) {
+        return wanted;
+    }
+    const Mask<Real> weighty = weight >= L(cutoff_);
+    const Mask<Real> shallow = group.depth < Indices<Real>(max_depth_);
+    observer_.dropped(group, kind, wanted, weighty, shallow);
+    return wanted & weighty & shallow;
+}
+
+}  // namespace whitted::WHITTED_ISA

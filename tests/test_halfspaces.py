@@ -1,0 +1,348 @@
+"""Facts of half-space intersections, against closed forms and against exact rational arithmetic."""
+
+import math
+import random
+import subprocess
+import sys
+from array import array
+from collections.abc import Sequence
+from dataclasses import replace
+from fractions import Fraction
+from itertools import combinations
+from pathlib import Path
+
+import pytest
+from hypothesis import given, settings
+from hypothesis import strategies as st
+
+from converter.scene.geometry import check_geometry, scene_facts
+from converter.scene.model import Object, Plane, Polyhedron, Sphere
+from native_tracer import _core
+from native_tracer.halfspaces import polyhedron_faces, polyhedron_facts
+
+CUBE: list[Plane] = [
+    (1, 0, 0, -1),
+    (-1, 0, 0, -1),
+    (0, 1, 0, -1),
+    (0, -1, 0, -1),
+    (0, 0, 1, -1),
+    (0, 0, -1, -1),
+]
+OCTAHEDRON: list[Plane] = [(a, b, c, -1) for a in (1, -1) for b in (1, -1) for c in (1, -1)]
+
+
+def facts_of(planes: Sequence[Sequence[float]]):
+    return polyhedron_facts([planes])[0]
+
+
+def prism(sides: int) -> list[Plane]:
+    return [(math.cos(a), math.sin(a), 0.0, -1.0) for a in (2 * math.pi * i / sides for i in range(sides))]
+
+
+def sphere_planes(count: int, seed: int = 0) -> list[Plane]:
+    """Planes that touch the unit sphere at random places."""
+    rng = random.Random(seed)
+    planes = []
+    while len(planes) < count:
+        x, y, z = (rng.gauss(0, 1) for _ in range(3))
+        r = math.hypot(x, y, z)
+        planes.append((x / r, y / r, z / r, -1.0))
+    return planes
+
+
+def rotation(seed: int) -> list[list[float]]:
+    rng = random.Random(seed)
+    w, x, y, z = (rng.gauss(0, 1) for _ in range(4))
+    s = 2 / (w * w + x * x + y * y + z * z)
+    return [
+        [1 - s * (y * y + z * z), s * (x * y - z * w), s * (x * z + y * w)],
+        [s * (x * y + z * w), 1 - s * (x * x + z * z), s * (y * z - x * w)],
+        [s * (x * z - y * w), s * (y * z + x * w), 1 - s * (x * x + y * y)],
+    ]
+
+
+def moved(planes: Sequence[Plane], seed: int, scale: float = 1.0, offset: float = 0.0) -> list[Plane]:
+    """The body, turned at random, then scaled, then shifted; every plane multiplied by some number."""
+    rng = random.Random(seed)
+    turn = rotation(seed)
+    shift = [rng.gauss(0, 1) * offset for _ in range(3)]
+    result = []
+    for a, b, c, d in planes:
+        x, y, z = (row[0] * a + row[1] * b + row[2] * c for row in turn)
+        d = d * scale - (x * shift[0] + y * shift[1] + z * shift[2])
+        factor = 10 ** rng.uniform(-9, 9)
+        result.append((x * factor, y * factor, z * factor, d * factor))
+    return result
+
+
+def wedge(slope: float) -> list[Plane]:
+    """0 <= y <= slope x up to x = 1, two wide: thinner than anything at its edge, and `slope` thick at most."""
+    return [(0, -1, 0, 0), (-slope, 1, 0, 0), (1, 0, 0, -1), (0, 0, 1, -1), (0, 0, -1, -1)]
+
+
+# ---- Closed forms ----------------------------------------------------------------------------------------------------
+
+
+def test_cube():
+    facts = facts_of(CUBE)
+    assert (facts.solid, facts.bounded, facts.kept, facts.redundant) == (True, True, (0, 1, 2, 3, 4, 5), ())
+    assert (facts.low, facts.high, facts.inside) == ((-1, -1, -1), (1, 1, 1), (0, 0, 0))
+    for face in polyhedron_faces(CUBE):
+        assert face.area == 4
+        assert len(face.neighbors) == 4
+
+
+@pytest.mark.parametrize(
+    ("planes", "kept"),
+    [
+        ([], ()),
+        ([(0, 2, 0, 3)], (0,)),
+        ([(0, 1, 0, 0), (0, -1, 0, -1)], (0, 1)),
+        ([(0, 1, 0, 0), (1, 0, 0, 0)], (0, 1)),
+        ([(0, 1, 0, 0), (0, 1, 0, -1)], (0,)),
+        (CUBE[:5], (0, 1, 2, 3, 4)),
+        (prism(7), tuple(range(7))),
+        (prism(500), tuple(range(500))),
+        (moved(prism(12), 1), tuple(range(12))),
+        (moved(prism(12), 2, 1e-6, 1.0), tuple(range(12))),
+        (moved(OCTAHEDRON[:4], 3), (0, 1, 2, 3)),
+    ],
+)
+def test_unbounded(planes, kept):
+    facts = facts_of(planes)
+    assert (facts.solid, facts.bounded, facts.kept) == (True, False, kept)
+    assert all(a * x + b * y + c * z + d < 0 for a, b, c, d in planes for x, y, z in [facts.inside])
+
+
+def test_without_vertices_the_box_is_around_the_nearest_points():
+    facts = facts_of([(0, 3, 0, -6)])
+    assert (facts.low, facts.high) == ((0, 2, 0), (0, 2, 0))
+
+
+@pytest.mark.parametrize(
+    ("extra", "redundant"),
+    [
+        ((2, 0, 0, -2), 6),  # repeats plane 0, scaled
+        ((1 / 3, 0, 0, -1 / 3), 6),
+        ((1, 1, 0, -2), 6),  # touches an edge
+        ((1, 1, 1, -3), 6),  # touches a vertex
+        ((1e-9, 2e-9, -3e-9, -6e-9), 6),
+        ((1, 2, 3, -7), 6),  # is farther away
+        ((1, 0, 0, -0.5), 0),  # is nearer than plane 0
+    ],
+)
+@pytest.mark.parametrize("seed", [None, 1, 2])
+def test_redundant(extra, redundant, seed):
+    planes = [*CUBE, extra]
+    facts = facts_of(planes if seed is None else moved(planes, seed, 1e3))
+    assert facts.redundant == (redundant,)
+    assert facts.kept == tuple(k for k in range(7) if k != redundant)
+
+
+def test_the_first_of_many_repeats_is_kept():
+    planes = [tuple(x * factor for x in plane) for factor in (3, 1, 1e9, 1e-9) for plane in CUBE]
+    assert facts_of(planes).kept == (0, 1, 2, 3, 4, 5)
+
+
+@pytest.mark.parametrize("depth", [1e-3, 1e-6, 1e-9, 1e-12])
+def test_what_cuts_a_little_is_kept(depth):
+    assert facts_of([*CUBE, (1, 1, 1, depth - 3)]).redundant == ()
+    assert facts_of([*CUBE, (1, depth, 0, -1)]).redundant == ()
+    assert facts_of([*CUBE, (1, 0, 0, depth - 1)]).redundant == (0,)
+
+
+# ---- Slivers, and none -----------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("slope", [1.0, 1e-3, 1e-6, 1e-9, 1e-12])
+@pytest.mark.parametrize("seed", [None, 1, 2])
+def test_slivers_are_solid(slope, seed):
+    planes = wedge(slope)
+    facts = facts_of(planes if seed is None else moved(planes, seed, 1e-6))
+    assert facts.solid
+    assert facts.bounded
+    assert facts.kept == (0, 1, 2, 3, 4)
+
+
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+def test_what_rounding_may_have_made_has_no_volume(scale):
+    assert not facts_of(wedge(1e-16)).solid
+    thick, thin = ([(1, 0, 0, -scale), (-1, 0, 0, scale * (1 - t))] for t in (1e-12, 1e-15))
+    assert facts_of(thick).solid
+    assert not facts_of(thin).solid
+
+
+@pytest.mark.parametrize(
+    ("planes", "conflict"),
+    [
+        ([*CUBE, (0, -1, 0, 3)], (2, 6)),
+        ([(1, 0, 0, 0), (-2, 0, 0, 0)], (0, 1)),
+        ([(1, 1, 0, 1), (0, 0, 1, 0), (-1, 0, 0, 0), (0, -1, 0, 0)], (0, 2, 3)),
+        ([(0, 0, 1, -5), (1, 1, 1, 1), (-1, 0, 0, 0), (0, -1, 0, 0), (0, 0, -1, 0)], (1, 2, 3, 4)),
+        ([*CUBE, *[(x, y, z, 1) for x, y, z, _ in OCTAHEDRON]], None),
+        ([*sphere_planes(200), (1, 0, 0, 5)], None),
+    ],
+)
+def test_conflict(planes, conflict):
+    facts = facts_of(planes)
+    assert not facts.solid
+    if conflict is not None:
+        assert facts.conflict == conflict
+    some = [planes[k] for k in facts.conflict]
+    assert 2 <= len(some) <= 4
+    assert not facts_of(some).solid
+    assert all(facts_of(rest).solid for rest in combinations(some, len(some) - 1))
+
+
+def test_check_geometry(small_scene):
+    assert check_geometry(small_scene) == []
+    nothing = Object(0, 0, Polyhedron(((1.0, 0.0, 0.0, 1.0), (-1.0, 0.0, 0.0, 0.0))), line=12)
+    flat = Object(0, 0, Polyhedron(((1.0, 0.0, 0.0, -1.0), (-2.0, 0.0, 0.0, 2.0))), line=15)
+    ball = Object(0, 0, Sphere((0.0, 0.0, 0.0), 1.0))
+    scene = replace(small_scene, objects=(nothing, ball, flat), file=Path("a.in"))
+    facts = scene_facts(scene)
+    assert facts[1] is None
+    empty, touching = check_geometry(scene, facts)
+    assert str(empty).startswith("a.in:12:1: object 0 is nothing: its planes 0 (1 0 0 1) and 1 (-1 0 0 0) exclude")
+    assert (touching.line, "touch" in touching.message) == (15, True)
+
+
+# ---- Against exact arithmetic ----------------------------------------------------------------------------------------
+
+Point = tuple[Fraction, Fraction, Fraction]
+
+
+def exact(planes: Sequence[Plane]) -> tuple[bool, tuple[int, ...], bool]:
+    """Whether a body has a volume, its planes with a face, and whether it is bounded, by trying all vertices."""
+    far = 10**9
+    own = [tuple(map(Fraction, p)) for p in planes]
+    box = [(*(sign * (i == j) for j in range(3)), -far) for i in range(3) for sign in (1, -1)]
+    rows = own + [tuple(map(Fraction, p)) for p in box]
+    points = {p for three in combinations(rows, 3) if (p := _meet(*three)) and all(_side(q, p) <= 0 for q in rows)}
+    if _dimension(points) < 3:
+        return False, (), False
+    kept: dict[Plane, int] = {}
+    for k, plane in enumerate(own):
+        largest = max(map(abs, plane[:3]))
+        if _dimension({p for p in points if _side(plane, p) == 0}) == 2:
+            kept.setdefault(tuple(x / largest for x in plane), k)
+    return True, tuple(kept.values()), all(abs(x) < far for p in points for x in p)
+
+
+def _side(plane, point) -> Fraction:
+    return sum(a * x for a, x in zip(plane, (*point, 1), strict=True))
+
+
+def _cross(a, b):
+    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
+
+
+def _meet(p, q, r) -> Point | None:
+    qr, rp, pq = _cross(q, r), _cross(r, p), _cross(p, q)
+    determinant = sum(a * b for a, b in zip(p, qr, strict=False))
+    if determinant == 0:
+        return None
+    return tuple(-(p[3] * qr[i] + q[3] * rp[i] + r[3] * pq[i]) / determinant for i in range(3))
+
+
+def _dimension(points) -> int:
+    """Of the points' affine hull; -1 without points."""
+    start, *others = points or (None,)
+    arms = [tuple(x - y for x, y in zip(p, start, strict=True)) for p in others]
+    if not arms:
+        return -1 if start is None else 0
+    normal = next((n for arm in arms if any(n := _cross(arms[0], arm))), None)
+    if normal is None:
+        return 1
+    return 3 if any(sum(a * b for a, b in zip(normal, arm, strict=True)) for arm in arms) else 2
+
+
+@st.composite
+def integer_planes(draw) -> list[Plane]:
+    """Small integers, among which planes often touch, repeat, or exclude one another."""
+    size = draw(st.sampled_from([1, 1, 2, 3, 10]))
+    numbers = st.integers(-size, size)
+    planes: list[Plane] = []
+    for _ in range(draw(st.integers(1, 7))):
+        if planes and draw(st.integers(0, 6)) == 0:
+            factor = draw(st.sampled_from([2, 3, 0.5, 7]))
+            planes.append(tuple(factor * x for x in draw(st.sampled_from(planes))))
+        else:
+            normal = draw(st.tuples(numbers, numbers, numbers).filter(any))
+            planes.append((*normal, -draw(st.integers(0, 2 * size) | numbers)))
+    return planes
+
+
+@settings(max_examples=100, deadline=None)
+@given(integer_planes(), st.integers(0, 1000), st.sampled_from([1e-6, 1.0, 1e6]))
+def test_agrees_with_exact_arithmetic(planes, seed, scale):
+    solid, kept, bounded = exact(planes)
+    for body in (planes, moved(planes, seed, scale)):
+        facts = facts_of(body)
+        assert facts.solid == solid
+        if solid:
+            assert (facts.kept, facts.bounded) == (kept, bounded)
+            assert all(_side(map(Fraction, p), map(Fraction, facts.inside)) < 0 for p in body)
+
+
+# ---- Faces -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("planes", [CUBE, OCTAHEDRON, wedge(1e-3), [*prism(30), *CUBE[4:]], sphere_planes(200)])
+def test_faces_close(planes):
+    """Outward area vectors of a closed surface add up to nothing, and every edge has two sides."""
+    faces = polyhedron_faces(planes)
+    total = [0.0, 0.0, 0.0]
+    for (a, b, c, _), face in zip(planes, faces, strict=True):
+        share = face.area / math.hypot(a, b, c)
+        total = [t + share * x for t, x in zip(total, (a, b, c), strict=True)]
+    assert max(map(abs, total)) < 1e-14 * sum(face.area for face in faces)
+    if planes is not OCTAHEDRON:  # where four faces meet, an edge of no length may be seen from one side only
+        edges = {(k, i) for k, face in enumerate(faces) for i in face.neighbors}
+        assert edges == {(i, k) for k, i in edges}
+
+
+def test_faces_of_what_has_none():
+    assert polyhedron_faces(CUBE[:5]) == []
+    assert polyhedron_faces([(1, 0, 0, 1), (-1, 0, 0, 1)]) == []
+    assert polyhedron_faces([]) == []
+
+
+def test_redundant_planes_have_empty_faces():
+    faces = polyhedron_faces([(1, 1, 0, -2), *CUBE, (2, 0, 0, -2)])
+    assert [bool(face.neighbors) for face in faces] == [False, *[True] * 6, False]
+    assert {i for face in faces for i in face.neighbors} == set(range(1, 7))
+
+
+# ---- Size and misuse -------------------------------------------------------------------------------------------------
+
+
+def test_many_planes_and_many_polyhedra():
+    assert len(facts_of(sphere_planes(2000)).kept) == 2000
+    many = polyhedron_facts(moved(CUBE, seed, 1e-3, 10) for seed in range(2000))
+    assert all(facts.kept == (0, 1, 2, 3, 4, 5) for facts in many)
+
+
+@pytest.mark.parametrize("plane", [(0, 0, 0, 1), (math.nan, 1, 0, 0), (1, 0, 0, math.inf)])
+def test_planes_that_are_none(plane):
+    with pytest.raises(ValueError, match="plane 6 "):
+        facts_of([*CUBE, plane])
+    with pytest.raises(ValueError, match="plane 6 "):
+        polyhedron_faces([*CUBE, plane])
+
+
+def test_buffers_that_do_not_fit():
+    cube = array("d", [x for plane in CUBE for x in plane])
+    with pytest.raises(ValueError, match="four coefficients"):
+        _core.halfspace_bodies(cube[:-1], array("q", [0, 5]))
+    for offsets in ([0, 7], [3, 2], [-1, 2]):
+        with pytest.raises(ValueError, match="offsets"):
+            _core.halfspace_bodies(cube, array("q", offsets))
+
+
+def test_needs_no_numpy():
+    code = (
+        "import sys, native_tracer.halfspaces as h; h.polyhedron_facts([[(1, 0, 0, 0)]]); print('numpy' in sys.modules)"
+    )
+    ran = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True, timeout=60)
+    assert ran.stdout.strip() == "False"
