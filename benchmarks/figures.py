@@ -19,7 +19,7 @@ from pathlib import Path
 
 import numpy as np
 
-from converter.compare.metrics import compare_images
+from converter.compare.metrics import compare_pixels
 from converter.renderers.base import Renderer
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
@@ -50,11 +50,10 @@ def agreement() -> None:
         native = NativeRenderer().render(scene, settings)
         MitsubaRenderer().render(scene, settings)
         mitsuba = MitsubaRenderer().render(scene, settings)
-        metrics = compare_images(np.asarray(native.pixels), np.asarray(mitsuba.pixels))
-        print(
-            f"{file.name:<18}{metrics.disagreeing:>9}{metrics.disagreeing_percent:>9.4f}{metrics.largest:>12.2e}"
-            f"{native.seconds['render']:>10.3f}{mitsuba.seconds['render']:>10.3f}  {mitsuba.statistics['intersections']}"
-        )
+        metrics = compare_pixels(np.asarray(native.pixels), np.asarray(mitsuba.pixels))
+        seconds = f"{native.seconds['render']:>10.3f}{mitsuba.seconds['render']:>10.3f}"
+        difference = f"{metrics.disagreeing_percent:>9.4f}{metrics.largest.difference:>12.2e}"
+        print(f"{file.name:<18}{metrics.disagreeing:>9}{difference}{seconds}  {mitsuba.statistics['intersections']}")
 
 
 def speed() -> None:
@@ -110,7 +109,9 @@ def _interleaved(subjects: dict[str, Callable[[], float]]) -> dict[str, float]:
 def _process(program: str, *arguments: str | Path) -> Callable[[], float]:
     def run() -> float:
         started = time.perf_counter()
-        subprocess.run([PROGRAMS / program, *arguments], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL)
+        subprocess.run(
+            [PROGRAMS / program, *arguments], check=True, stdout=subprocess.DEVNULL, stderr=subprocess.DEVNULL
+        )
         return time.perf_counter() - started
 
     return run

@@ -107,7 +107,12 @@ def trace_pixel(
     blinn: bool = False,
     precision: Literal["float", "double", "long double"] = "double",
 ) -> dict[str, Any]:
-    """The rays of one pixel as nested dictionaries; `converter.renderers.native` describes them."""
+    """The rays of one pixel as nested dictionaries; `converter.renderers.native` describes them.
+
+    Raises:
+        ValueError: there are more than 2^20 of them.
+
+    """
 
 def quantize(pixels: Buffer) -> bytes:
     """8-bit RGB of a float32 buffer: round(255 c), c clamped to 0..1, a NaN black."""

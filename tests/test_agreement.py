@@ -5,7 +5,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from converter.compare.metrics import compare_images
+from converter.compare.metrics import compare_pixels
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
 from converter.scene.parser import load_scene
@@ -21,7 +21,7 @@ def agree(scene, settings, renderer, tmp_path):
     """Compare a renderer's picture with the native tracer's, and leave both where a failure's message says."""
     reference = np.asarray(NativeRenderer().render(scene, settings).pixels)
     result = np.asarray(renderer.render(scene, settings).pixels)
-    difference = compare_images(reference, result)
+    difference = compare_pixels(reference, result)
     for name, image in (("reference", reference), ("result", result), ("difference", np.abs(reference - result))):
         np.save(tmp_path / f"{name}.npy", image)
     assert difference.disagreeing <= MOST_DISAGREEING_PIXELS, f"{difference.largest}; pictures: {tmp_path}"

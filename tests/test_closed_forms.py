@@ -35,7 +35,7 @@ def middle(request):
     renderer, tolerance = RENDERERS[request.param]
 
     def draw(scene, **settings):
-        options = {"width": 3, "height": 3, "pixel": "center", "threads": 1} | settings
+        options = {"width": 3, "height": 3, "pixel": "center"} | settings
         pixels = np.asarray(renderer.render(scene, Settings(**options)).pixels)
         assert np.isfinite(pixels).all()
         return pixels[1, 1].tolist()
@@ -124,7 +124,7 @@ SLAB_INDEX = 1.5
 
 
 @pytest.mark.parametrize("written", [SLAB_INDEX, 1 / SLAB_INDEX])
-def test_slab_of_glass_shifts_a_ray(middle, written):
+def test_slab_of_glass_shifts_a_ray(middle, written, request):
     """Through a slab of thickness 2 at 45 degrees; behind it a wall that is lit on one side of the exact exit only."""
     draw, tolerance = middle
     glass = Finish(0.0, 0.0, 0.0, 1.0, 0.0, 1.0, written)
@@ -136,7 +136,8 @@ def test_slab_of_glass_shifts_a_ray(middle, written):
     shift = 2 * (math.tan(theta) - math.tan(inner))
     exit_x = -10 * math.tan(theta) + shift
     for side in (-1, 1):
-        edge = exit_x + side * 1e-3
+        # Through meshes Embree decides which face is met, in single precision, on faces as wide as the horizon is far.
+        edge = exit_x + side * (0.03 if "mesh" in request.node.name else 1e-3)
         # The half-space x >= edge in front of a wall: met when the exit lies right of the edge.
         near = Object(0, 0, Polyhedron(((-1.0, 0.0, 0.0, edge), (0.0, 0.0, 1.0, 10.0), (0.0, 0.0, -1.0, -10.5))))
         far = half_space((0.0, 0.0, 1.0), 11.0, pigment=1)

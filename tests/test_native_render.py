@@ -174,6 +174,11 @@ def test_pixels_outside_the_picture_are_refused():
         native_tracer.trace_pixel(gallery(), 20, 15, 20, 0, cutoff=0, max_depth=0)
 
 
+def test_a_tree_that_nobody_could_read_is_refused():
+    with pytest.raises(ValueError, match="more than 1048576 rays"):
+        native_tracer.trace_pixel(endless(), 20, 15, 10, 7, cutoff=0, max_depth=60)
+
+
 # ---- Watching and stopping -------------------------------------------------------------------------------------------
 
 
@@ -208,18 +213,13 @@ def test_an_exception_out_of_progress_stops_at_once(precision):
 
 
 def test_what_is_finished_stays_in_the_picture():
-    # The upper half shows the background, the lower half a scene without end.
-    scene = endless()
-    scene.set_background((0.5, 0.5, 0.5))
-    image = native_tracer.Image(64, 64)
-
+    # The upper half shows the background, the lower half slabs between which rays split without end.
     scene = new_scene(background=(0.5, 0.5, 0.5))
-    half = add_finish(scene, kr=1, kt=1)
-    planes = [(0, 1, 0, 1)], [(0, -1, 0, -3)]
-    for p in planes:
-        scene.add_polyhedron(scene.add_solid(WHITE), half, p)
-    scene.add_polyhedron(scene.add_solid(WHITE), half, [(0, 1, 0, 2), (0, -1, 0, -2.5)])
+    pigment, half = scene.add_solid(WHITE), add_finish(scene, kr=1, kt=1)
+    scene.add_polyhedron(pigment, half, [(0, 1, 0, 1), (0, -1, 0, -1.5)])
+    scene.add_polyhedron(pigment, half, [(0, 1, 0, 2), (0, -1, 0, -2.5)])
     scene.set_camera(BLACK, (0, 0, -1), (0, 1, 0), 90)
+    image = native_tracer.Image(64, 64)
 
     def progress(share):
         if share >= 0.5:

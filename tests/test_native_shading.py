@@ -152,6 +152,17 @@ def test_highlight_away_from_the_mirror_direction(precision):
         assert ray["local"] == (expected,) * 3
 
 
+@pytest.mark.parametrize("alpha", [0, 0.5, 1, 2, 3.75, 17, 1000, 65535, 65536.5, 1e6])
+def test_highlights_of_any_exponent(precision, alpha):
+    # Whole exponents are multiplied out, others left to the C library; close to 1, so that something is left to see.
+    base = 1 - 2.0**-20
+    light = (((1 - base**2) ** 0.5, base, 0), WHITE, CONSTANT)
+    ray = floor_seen_at((0, 0), red, {"ks": 1, "alpha": alpha}, precision, [light])
+    # An error of the base counts alpha times; in single precision the light's direction is rounded too.
+    tolerance = (alpha + 4) * 8 * EPSILON[precision]
+    assert ray["local"] == pytest.approx((base**alpha,) * 3, abs=tolerance)
+
+
 @pytest.mark.parametrize("finish", [{"ka": 1}, {"kr": 1}, {"kt": 1}])
 def test_no_shadow_rays_where_nothing_answers_them(precision, finish):
     scene = new_scene()

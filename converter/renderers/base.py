@@ -47,7 +47,10 @@ class RendererUnavailable(Exception):  # noqa: N818 - what it says
 class Renderer(Protocol):
     """Draws scenes."""
 
-    name: str
+    @property
+    def name(self) -> str:
+        """What tables call it."""
+        ...
 
     def render(self, scene: Scene, settings: Settings, progress: Progress | None = None) -> Rendering:
         """Draw `scene`.

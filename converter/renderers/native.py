@@ -79,6 +79,12 @@ class NativeRenderer:
             total_reflection: whether the transmitted ray follows the mirror direction
             lights: for each light, {"light", "cosine", "shadowed_by", "attenuation", "diffuse", "specular"}: its
                 index, n.l, the index of an object in its way or None, what its colour is divided by, and what it adds
+
+        Raises:
+            RendererUnavailable: the native module is not built.
+            ValueError: a texture cannot be read, `settings` make no sense, or there are more than 2^20 rays.
+            IndexError: the pixel lies outside the picture.
+
         """
         needs = scene_needs(scene, settings)
         native_scene = build_scene(scene, needs)

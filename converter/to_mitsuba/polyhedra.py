@@ -228,7 +228,8 @@ def _mesh(planes: Long, rings: dict[int, Ring], count: int, faces: Sequence[Face
     vertices, corners = _vertices(rings, faces)
     distances = vertices @ planes[:, :3].T.astype(np.float64) + planes[:, 3].astype(np.float64)
     reach = np.abs(vertices).max()
-    if out := [k for k in corners if distances[:, k].max() > OFF * reach]:
+    outermost = distances.max(axis=0)
+    if out := [k for k in corners if outermost[k] > OFF * reach]:
         raise PolyhedronError(f"plane {_listed(out)} cuts off more")
     if off := [k for k, ring in corners.items() if distances[ring, k].min() < -OFF * reach]:
         raise PolyhedronError(f"the face of plane {_listed(off)} is not flat")

@@ -14,11 +14,12 @@ import drjit as dr
 import mitsuba as mi
 
 from mitsuba_plugins.integrators.geometry import Surface
-from mitsuba_plugins.integrators.rays import NOTHING, Ray, lanes
+from mitsuba_plugins.integrators.rays import NOTHING, Ray, lanes, ray_reach
 from mitsuba_plugins.integrators.tables import Records
 
 OFFSET = 2.0**-20
 """Start of a ray off its surface, in units of the largest coordinate involved: 16 units in the last place."""
+MOST_STEPS = 32
 
 
 class MeshSurfaces:
@@ -62,11 +63,12 @@ class MeshSurfaces:
     @dr.syntax
     def _find(self, ray: Ray, distance: Any, active: Any) -> tuple[Any, Any, Any]:
         width = dr.width(ray.d)
-        start = self._start(ray, active)
+        start = mi.Point3d(self._start(ray, active))
         t = dr.full(mi.Float64, dr.inf, width)
         found = dr.full(mi.UInt32, NOTHING, width)
         record = dr.zeros(mi.UInt32, width)
         searching = active & lanes(width)
+        steps = dr.zeros(mi.UInt32, width)
         while searching:
             probe = mi.Ray3f(mi.Point3f(start), mi.Vector3f(ray.d))
             pi = self._scene.ray_intersect_preliminary(probe, coherent=False, active=searching)
@@ -81,17 +83,20 @@ class MeshSurfaces:
             t = dr.select(accepted, t_exact, t)
             found = dr.select(accepted, index, found)
             record = dr.select(accepted, index_record, record)
-            searching = met & ~allowed
-            beyond = mi.Float64(pi.t) + (_reach(start) + mi.Float64(pi.t)) * OFFSET
-            beyond += dr.gather(mi.Float64, self._deviation, index, met)
-            start = dr.select(searching, start + ray.d * beyond, start)
+            # Step over what may not be met. Steps double, so that they get out of any rounding error in a few; where
+            # they start from nothing (at the origin, from the eye) they cannot, and end.
+            steps += 1
+            searching = met & ~allowed & (steps < MOST_STEPS)
+            step = (_reach(start) + ray_reach(ray) + mi.Float64(pi.t)) * OFFSET
+            step += dr.gather(mi.Float64, self._deviation, index, met)
+            start = mi.Point3d(start + ray.d * (mi.Float64(pi.t) + step * mi.Float64(mi.UInt32(1) << steps)))
         return t, found, record
 
     def _start(self, ray: Ray, active: Any) -> Any:
         """Origin for the single-precision ray, off the surface that `ray` starts on, on the side it travels on."""
         leaves = active & (ray.object != NOTHING)
         _, n = self._records.surface_point(ray.object, ray.record, ray.o, leaves)
-        reach = dr.maximum(_reach(ray.o), dr.gather(mi.Float64, self._extent, ray.object, leaves))
+        reach = dr.maximum(ray_reach(ray), dr.gather(mi.Float64, self._extent, ray.object, leaves))
         offset = reach * OFFSET + 2 * dr.gather(mi.Float64, self._deviation, ray.object, leaves)
         return dr.select(leaves, ray.o + dr.select(ray.inside, -n, n) * offset, ray.o)
 
@@ -101,4 +106,5 @@ def _reach(p: Any) -> Any:
 
 
 def _extent(surface: Surface) -> float:
-    return surface.sphere[3] if surface.sphere is not None else 0.0
+    """Largest coordinate of a sphere, whose rounding moves its surface; a mesh's is in its deviation."""
+    return max(map(abs, surface.sphere[:3])) + surface.sphere[3] if surface.sphere is not None else 0.0

@@ -45,6 +45,11 @@ class Hit:
     inside: Any  # Bool, whether the ray came from inside the object
 
 
+def ray_reach(ray: Ray) -> Any:
+    """The largest coordinate or distance that went into the origin of a ray, 0 for a primary one."""
+    return ray.t_min / (ERROR_BOUND * EPSILON)
+
+
 def start_ray(o: Any, d: Any) -> Ray:
     """A ray that starts on no surface, at full width, as Dr.Jit's loops and local buffers want it."""
     width = dr.width(d)
@@ -61,8 +66,8 @@ def start_ray(o: Any, d: Any) -> Ray:
 def lanes(width: int) -> Any:
     """Mask of the rays that exist.
 
-    The last SIMD packet of a wavefront is filled up with lanes that hold garbage. They answer comparisons, but no ray is
-    traced for them, so that a loop that waits until each has found something may wait for ever.
+    The last SIMD packet of a wavefront is filled up with lanes that hold garbage. They answer comparisons, but no ray
+    is traced for them, so that a loop that waits until each has found something may wait for ever.
     """
     return dr.arange(mi.UInt32, width) < width
 

@@ -14,7 +14,7 @@ from mitsuba_plugins.integrators.rays import NOTHING, Hit, Ray, lanes, power, re
 from mitsuba_plugins.integrators.stack import RayStack
 from mitsuba_plugins.integrators.tables import Finish, Illumination, Lights, Materials, Records
 
-ANALYTIC_LIMIT = 64
+ANALYTIC_LIMIT = 32
 """Spheres and planes, together, up to which `intersections` "auto" intersects them in the kernel."""
 
 FIRST_BAND, FIRST_BAND_BRANCHING = 1 << 19, 1 << 16

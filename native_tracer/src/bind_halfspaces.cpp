@@ -146,8 +146,8 @@ nb::list faces(const Coefficients& coefficients) {
     }
     if (planes.size() < all.size()) {
         // Once more without the planes that only touch the body: then every edge has its two proper neighbours.
-        faces = whitted::halfspaces::faces_of(planes);
-        if (!std::all_of(faces.begin(), faces.end(), [](const Face& f) { return f.finite() && !f.empty(); })) {
+        const Body again = whitted::halfspaces::body_of(planes, faces);
+        if (!again.bounded || again.kept.size() < planes.size()) {
             return list;  // it is those planes' roundings that bound the body
         }
     }

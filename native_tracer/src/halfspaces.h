@@ -27,19 +27,67 @@ inline std::vector<int> shuffled(std::size_t count) {
     return order;
 }
 
-// The faces of all planes, empty ones too, finished. They refer to `planes`.
-inline std::vector<Face> faces_of(const std::vector<Plane>& planes) {
+// The faces of all planes, empty ones too, finished, as far as `far` from the origin. They refer to `planes`.
+inline std::vector<Face> faces_of(const std::vector<Plane>& planes, Real far) {
     const std::vector<int> order = shuffled(planes.size());
     std::vector<Face> faces;
     faces.reserve(planes.size());
     for (std::size_t k = 0; k < planes.size(); ++k) {
-        Face& face = faces.emplace_back(planes, static_cast<int>(k));
+        Face& face = faces.emplace_back(planes, static_cast<int>(k), far);
         for (const int other : order) {
             face.cut_by(other);
         }
         face.finish();
     }
     return faces;
+}
+
+// The faces of a body's part in the box of half size `size` around the origin, none of them empty, the box's own among
+// them, whose planes are added to `planes`.
+inline std::vector<Face> faces_in_box(std::vector<Plane>& planes, const std::vector<Face>& faces, Real size) {
+    const int count = static_cast<int>(planes.size());
+    for (const Real sign : {Real(-1), Real(1)}) {
+        planes.insert(planes.end(), {{sign, 0, 0, -size}, {0, sign, 0, -size}, {0, 0, sign, -size}});
+    }
+    std::vector<Face> result;
+    for (const Face& face : faces) {
+        // A plane without a face cuts nothing of the box's faces either.
+        if (!face.empty()) {
+            result.push_back(face.continued(planes));
+            for (int other = count; other < count + 6; ++other) {
+                result.back().cut_by(other);
+            }
+        }
+    }
+    for (int k = count; k < count + 6; ++k) {
+        result.emplace_back(planes, k, 4 * size);
+        for (int other = 0; other < count + 6; ++other) {
+            result.back().cut_by(other);
+        }
+    }
+    std::erase_if(result, [](const Face& face) { return face.empty(); });
+    for (Face& face : result) {
+        face.finish();
+    }
+    return result;
+}
+
+// Find a point inside a body whose faces form a closed surface, and go as far as `reach` from the origin: the centroid
+// of the surface. The body is nowhere far thicker than that is deep: for cones, the worst case, six times. False if it
+// is too thin.
+inline bool find_inside(const std::vector<Plane>& planes, const std::vector<Face>& faces, Real reach, Vec& inside) {
+    Real total = 0;
+    Vec moment;
+    for (const Face& face : faces) {
+        if (!face.empty()) {
+            total += face.area();
+            moment = moment + face.area() * face.centroid();
+        }
+    }
+    inside = (1 / total) * moment;
+    return std::all_of(planes.begin(), planes.end(), [&](const Plane& plane) {
+        return plane.distance(inside) < -2 * rounding * (reach + std::abs(plane.offset));
+    });
 }
 
 // What is known of an intersection of half-spaces.
@@ -51,51 +99,59 @@ struct Body {
     Vec inside;                        // a point well inside
 };
 
-// Find a point inside a bounded body that goes as far as `reach` from the origin: the centroid of its surface. The body
-// is nowhere far thicker than the point is deep: for cones, the worst case, six times. False if it is too thin.
-inline bool find_inside(const std::vector<Plane>& planes, const std::vector<Face>& faces, Real reach, Vec& inside) {
-    const auto counts = [](const Face& face) { return !face.empty() && face.finite(); };
-    const auto first = std::find_if(faces.begin(), faces.end(), counts);
-    if (first == faces.end()) {
-        return false;
-    }
-    const Vec origin = first->centroid();
-    Real total = 0;
-    Vec moment;
-    for (const Face& face : faces) {
-        if (counts(face)) {
-            total += face.area();
-            moment = moment + face.area() * (face.centroid() - origin);
-        }
-    }
-    inside = origin + (1 / total) * moment;
-    return std::all_of(planes.begin(), planes.end(), [&](const Plane& plane) {
-        return plane.distance(inside) < -2 * rounding * (reach + std::abs(plane.offset));
-    });
-}
-
-// The same for a body that need not be bounded, of which only the part in a box around the origin counts.
-inline bool find_inside_box(std::vector<Plane> planes, const std::vector<Face>& faces, Real size, Vec& inside) {
-    const std::size_t count = planes.size();
-    for (const Real sign : {Real(-1), Real(1)}) {
-        planes.insert(planes.end(), {{sign, 0, 0, -size}, {0, sign, 0, -size}, {0, 0, sign, -size}});
-    }
-    std::vector<Face> closed;
+// The body as far as `far` from the origin. Leaves the faces of all planes in `faces`.
+inline Body body_within(const std::vector<Plane>& planes, Real far, std::vector<Face>& faces) {
+    Body body;
+    faces = faces_of(planes, far);
+    std::vector<bool> has_face(planes.size());
+    bool any_narrow = false;
+    bool closed = true;
+    Real height = 0;
+    Real reach = 0;
     for (std::size_t k = 0; k < planes.size(); ++k) {
-        // Planes without a face cut nothing of the box's either.
-        if (k < count && faces[k].empty()) {
-            continue;
+        if (!faces[k].empty()) {
+            has_face[k] = !faces[k].narrow();
+            any_narrow = any_narrow || !has_face[k];
+            closed = closed && faces[k].bounded();
+            height = std::max(height, std::abs(planes[k].offset));
+            faces[k].for_each_anchor([&](const Vec& p) { reach = std::max(reach, length(p)); });
         }
-        Face& face = closed.emplace_back(k < count ? faces[k].continued(planes) : Face(planes, static_cast<int>(k)));
-        for (std::size_t other = k < count ? count : 0; other < planes.size(); ++other) {
-            face.cut_by(static_cast<int>(other));
-        }
-        face.finish();
     }
-    return find_inside(planes, closed, size, inside);
+    body.solid = closed && find_inside(planes, faces, reach, body.inside);
+    const auto look_into_box = [&](Real size) {
+        std::vector<Plane> boxed = planes;
+        const std::vector<Face> parts = faces_in_box(boxed, faces, size);
+        for (const Face& part : parts) {
+            if (part.index() < planes.size() && !part.narrow()) {
+                has_face[part.index()] = true;
+            }
+        }
+        body.solid = body.solid || find_inside(boxed, parts, size, body.inside);
+    };
+    // What goes far, and is narrow or thin for that, may be neither where its planes are nearest the origin.
+    if (!body.solid || any_narrow) {
+        look_into_box(height > 0 ? 2 * height : 1);
+    }
+    if (!body.solid && reach > 0) {
+        look_into_box(2 * reach);
+    }
+    body.low = {far, far, far};
+    body.high = {-far, -far, -far};
+    for (std::size_t k = 0; k < planes.size(); ++k) {
+        (has_face[k] ? body.kept : body.redundant).push_back(static_cast<int>(k));
+        if (has_face[k]) {
+            body.bounded = body.bounded && faces[k].bounded();
+            faces[k].for_each_anchor([&](const Vec& p) {
+                body.low = {std::min(body.low.x, p.x), std::min(body.low.y, p.y), std::min(body.low.z, p.z)};
+                body.high = {std::max(body.high.x, p.x), std::max(body.high.y, p.y), std::max(body.high.z, p.z)};
+            });
+        }
+    }
+    return body;
 }
 
-// Leaves the faces of all planes in `faces`.
+// An intersection of half-spaces. It counts as unbounded if it goes on for 2^24 times as far from the origin as its
+// planes are; if it does not even begin there, for 2^40 times. Leaves the faces of all planes in `faces`.
 inline Body body_of(const std::vector<Plane>& planes, std::vector<Face>& faces) {
     Body body;
     if (planes.empty()) {
@@ -103,33 +159,15 @@ inline Body body_of(const std::vector<Plane>& planes, std::vector<Face>& faces) 
         body.bounded = false;
         return body;
     }
-    faces = faces_of(planes);
-    Real reach = 0;
     Real height = 0;
-    body.low = {infinity, infinity, infinity};
-    body.high = {-infinity, -infinity, -infinity};
-    for (std::size_t k = 0; k < planes.size(); ++k) {
-        const Face& face = faces[k];
-        if (!face.empty()) {
-            height = std::max(height, std::abs(planes[k].offset));
-        }
-        if (face.empty() || face.narrow()) {
-            body.redundant.push_back(static_cast<int>(k));
-            continue;
-        }
-        body.kept.push_back(static_cast<int>(k));
-        body.bounded = body.bounded && face.finite();
-        face.for_each_anchor([&](const Vec& p) {
-            body.low = {std::min(body.low.x, p.x), std::min(body.low.y, p.y), std::min(body.low.z, p.z)};
-            body.high = {std::max(body.high.x, p.x), std::max(body.high.y, p.y), std::max(body.high.z, p.z)};
-            reach = std::max(reach, length(p));
-        });
+    for (const Plane& plane : planes) {
+        height = std::max(height, std::abs(plane.offset));
     }
-    if (!body.kept.empty()) {
-        // What goes far away, and gets thin there, may be thick where its planes are nearest the origin.
-        body.solid = (body.bounded && find_inside(planes, faces, reach, body.inside)) ||
-                     find_inside_box(planes, faces, height > 0 ? 2 * height : 1, body.inside) ||
-                     find_inside_box(planes, faces, reach > 0 ? 2 * reach : 1, body.inside);
+    for (const Real far : {0x1p24L, 0x1p40L}) {
+        body = body_within(planes, far * (height > 0 ? height : 1), faces);
+        if (body.solid) {
+            break;
+        }
     }
     return body;
 }

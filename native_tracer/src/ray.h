@@ -18,8 +18,8 @@ struct Rays {
     Mask<Real> inside;                      // it travels inside `object`
 };
 
-// A bound of the rounding error of points found at distance t of their rays: each coordinate is the result of a few
-// operations on numbers of about that size. 32 is twice what the longest chain of them can amount to.
+// A bound of the rounding error of points found at distance t of their rays. Some thirty operations on numbers of about
+// that size lead to a coordinate, each wrong by half an epsilon at most; 32 epsilon is twice their sum.
 template <typename Real>
 Lanes<Real> rounding_error(const Vector<Lanes<Real>>& point, Lanes<Real> t) {
     return Lanes<Real>(32 * std::numeric_limits<Real>::epsilon()) * (max_norm(point) + t);

@@ -1,11 +1,18 @@
 #include "ray_tree.h"
 
+#include <stdexcept>
+#include <string>
+
 namespace whitted {
 
 RayTree::RayTree() = default;
 RayTree::~RayTree() = default;
 
 int RayTree::add() {
+    if (records_.size() == most_rays) {
+        throw std::length_error("this pixel's tree has more than " + std::to_string(most_rays) +
+                                " rays; a larger cutoff or a smaller max_depth makes it shorter");
+    }
     records_.emplace_back();
     return static_cast<int>(records_.size()) - 1;
 }

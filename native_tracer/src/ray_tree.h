@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -50,7 +51,10 @@ class RayTree {
     RayTree(const RayTree&) = delete;
     RayTree& operator=(const RayTree&) = delete;
 
-    // Adds a record and returns its index.
+    // Nobody reads larger trees, and the largest that a scene asks for would not fit into memory.
+    static constexpr std::size_t most_rays = std::size_t{1} << 20;
+
+    // Adds a record and returns its index. Throws std::length_error when there are too many.
     int add();
     RayRecord& operator[](int index);
     void add_light(int index, const LightRecord& light);

@@ -55,13 +55,19 @@ struct Surface {
     L ka, kd, ks, alpha, kr, kt, eta;
 };
 
+// Puts the lanes of `other` that the mask names into `surface`.
 template <typename Real>
-Surface<Real> select(Mask<Real> mask, const Surface<Real>& a, const Surface<Real>& b) {
-    return {select(mask, a.hit, b.hit),       select(mask, a.point, b.point), select(mask, a.outward, b.outward),
-            select(mask, a.normal, b.normal), select(mask, a.error, b.error), select(mask, a.pigment, b.pigment),
-            select(mask, a.ka, b.ka),         select(mask, a.kd, b.kd),       select(mask, a.ks, b.ks),
-            select(mask, a.alpha, b.alpha),   select(mask, a.kr, b.kr),       select(mask, a.kt, b.kt),
-            select(mask, a.eta, b.eta)};
+void merge(Mask<Real> mask, const Surface<Real>& other, Surface<Real>& surface) {
+    const auto put = [&](auto member) { surface.*member = select(mask, other.*member, surface.*member); };
+    using S = Surface<Real>;
+    put(&S::point);
+    put(&S::outward);
+    put(&S::normal);
+    put(&S::error);
+    put(&S::pigment);
+    for (const auto member : {&S::ka, &S::kd, &S::ks, &S::alpha, &S::kr, &S::kt, &S::eta}) {
+        put(member);
+    }
 }
 
 template <typename Real>
@@ -105,17 +111,18 @@ struct Scene {
     }
 
  private:
-    // Calls visit(object, crossing) for the objects that some ray crosses, until it returns false.
+    // Calls visit(object, crossing) for the objects that some ray crosses, until it returns false: the one place that
+    // knows how the objects are searched.
     template <typename Visit>
     [[gnu::always_inline]] void for_each_crossing(const Rays<Real>& rays, Visit visit) const {
         Crossing<Real> crossing;
         for (const Sphere<Real>& sphere : spheres) {
-            if (cross(sphere, rays, crossing) && !visit(sphere.object, crossing)) {
+            if (find_crossing(sphere, rays, crossing) && !visit(sphere.object, crossing)) {
                 return;
             }
         }
         for (const Polyhedron<Real>& polyhedron : polyhedra) {
-            if (cross(polyhedron, patches.data(), rays, crossing) && !visit(polyhedron.object, crossing)) {
+            if (find_crossing(polyhedron, patches.data(), rays, crossing) && !visit(polyhedron.object, crossing)) {
                 return;
             }
         }

@@ -64,7 +64,8 @@ struct Polyhedron {
 //
 // Returns false, with nothing said about where, if no ray crosses the sphere.
 template <typename Real>
-[[gnu::always_inline]] inline bool cross(const Sphere<Real>& sphere, const Rays<Real>& rays, Crossing<Real>& crossing) {
+[[gnu::always_inline]] inline bool find_crossing(const Sphere<Real>& sphere, const Rays<Real>& rays,
+                                                 Crossing<Real>& crossing) {
     using L = Lanes<Real>;
     const L zero = Real(0);
     const L infinity = std::numeric_limits<Real>::infinity();
@@ -113,8 +114,8 @@ template <typename Real>
 //
 // Returns false, with nothing said about where, if no ray crosses the polyhedron.
 template <typename Real>
-[[gnu::always_inline]] inline bool cross(const Polyhedron<Real>& polyhedron, const Patch<Real>* planes,
-                                         const Rays<Real>& rays, Crossing<Real>& crossing) {
+[[gnu::always_inline]] inline bool find_crossing(const Polyhedron<Real>& polyhedron, const Patch<Real>* planes,
+                                                 const Rays<Real>& rays, Crossing<Real>& crossing) {
     using L = Lanes<Real>;
     const L zero = Real(0);
     const L infinity = std::numeric_limits<Real>::infinity();

@@ -166,7 +166,7 @@ Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const H
         surface.eta = finish.eta;
 
         if (!first) {
-            result = select(same, another, result);
+            merge(same, another, result);
         }
         first = false;
     });
