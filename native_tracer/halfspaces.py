@@ -24,6 +24,7 @@ class PolyhedronFacts(NamedTuple):
     solid: bool
     """It has a volume."""
     bounded: bool
+    """It ends within 2^24 times the largest distance of a plane from the origin."""
     kept: tuple[int, ...]
     """Planes that have a face, ascending; of planes that coincide the first."""
     redundant: tuple[int, ...]

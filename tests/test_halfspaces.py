@@ -151,6 +151,20 @@ def test_what_cuts_a_little_is_kept(depth):
     assert facts_of([*CUBE, (1, 0, 0, depth - 1)]).redundant == (0,)
 
 
+@pytest.mark.parametrize("noise", [1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8])
+@pytest.mark.parametrize("cap", [[], [(0.0, 0.0, 1.0, -1.0)]])
+def test_walls_that_are_parallel_but_for_noise(noise, cap):
+    """No wall is lost, however far away the walls may meet."""
+    rng = random.Random(7)
+    for seed in range(20):
+        walls = moved([*prism(3 + seed % 6), *cap], seed, 1.0, 10.0)
+        planes = [(*(x * (1 + noise * rng.gauss(0, 1)) for x in wall[:3]), wall[3]) for wall in walls]
+        facts = facts_of(planes)
+        assert facts.solid
+        assert facts.kept == tuple(range(len(planes)))
+        assert noise > 1e-9 or not facts.bounded
+
+
 # ---- Slivers, and none -----------------------------------------------------------------------------------------------
 
 

@@ -178,6 +178,16 @@ def test_polygons_step_in_for_the_hull():
     assert np.count_nonzero(mesh.planes == 6) == 1
 
 
+@pytest.mark.parametrize("tilt", [1e-16, 1e-15, 1e-14, 1e-13, 1e-12, 1e-10, 1e-8, 1e-6, 1e-4])
+def test_planes_that_nearly_repeat_others(tilt):
+    rng = np.random.default_rng(5)
+    for seed in range(10):
+        planes = sphere_planes(12, seed)
+        planes += [(*(np.array(plane[:3]) + tilt * rng.normal(size=3)).tolist(), -1.0) for plane in planes[:3]]
+        planes = moved(planes, seed, 3.0)
+        check_mesh(polyhedron_mesh(planes, BOX), planes)
+
+
 # ---- Any body --------------------------------------------------------------------------------------------------------
 
 

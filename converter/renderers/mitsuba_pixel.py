@@ -12,7 +12,7 @@ def trace_pixel(scene: Any, settings: Settings, x: int, y: int) -> dict[str, Any
 
     integrator, sensor = scene.integrator(), scene.sensors()[0]
     integrator.prepare(scene)
-    tracer = _PixelTracer(mi, integrator)
+    tracer = _PixelTracer(integrator)
     rays = [
         tracer.tree(integrator.primary_ray(sensor, mi.Point2d(x + dx, y + dy)), "primary", 1.0, 0)
         for dx, dy in integrator.sample_offsets(settings.samples)
@@ -24,15 +24,22 @@ def trace_pixel(scene: Any, settings: Settings, x: int, y: int) -> dict[str, Any
 class _PixelTracer:
     """Follows rays of width 1 and writes down what happens to them."""
 
-    def __init__(self, mi: Any, integrator: Any) -> None:
-        self._mi = mi
+    def __init__(self, integrator: Any) -> None:
+        import drjit
+        import mitsuba
+
+        self._dr = drjit
+        self._mi = mitsuba
         self._integrator = integrator
         self._cutoff = integrator.cutoff[0]
         self._max_depth = integrator.max_depth[0]
 
     def tree(self, ray: Any, kind: str, weight: float, depth: int) -> dict[str, Any]:
         """A ray and everything below it."""
+        # Numbers and no expressions of them: every step of every ray then runs the same few kernels.
+        self._dr.make_opaque(ray)
         hit = self._integrator.closest(ray, self._mi.Bool(True))
+        self._dr.make_opaque(hit)
         record: dict[str, Any] = {
             "kind": kind,
             "weight": weight,
@@ -46,6 +53,7 @@ class _PixelTracer:
             background = _numbers(self._integrator.background)
             return record | {"hit": None, "local": background, "radiance": background}
         finish, pigment = self._integrator.material(hit)
+        self._dr.make_opaque(finish, pigment)
         through, total = self._integrator.transmitted(ray, hit, finish.eta)
         lights = self._lights(ray, hit, finish, pigment)
         local = _numbers(finish.ka * self._integrator.ambient * pigment)
@@ -92,7 +100,8 @@ class _PixelTracer:
         mi = self._mi
         records = []
         for i in range(self._integrator.light_count):
-            light = self._integrator.light(mi.UInt32(i), ray, hit, finish, pigment, mi.Bool(True))
+            light = self._integrator.light(self._dr.opaque(mi.UInt32, i), ray, hit, finish, pigment, mi.Bool(True))
+            self._dr.eval(light)
             blocker = int(light.blocker[0])
             lit = light.cosine[0] > 0 and blocker == NOTHING
             records.append(

@@ -105,7 +105,7 @@ def polyhedron_mesh(planes: Sequence[HalfSpace], bounds: Box, name: str = "polyh
             if faces and any(faces[k].neighbors for k in kept):
                 break
         if kept and not faces:
-            raise PolyhedronError(f"{name} is too thin, so far from the origin")
+            raise PolyhedronError(f"{name}: what is left of it inside of the bounds has no volume")
     unit = _unit_planes(closed)
     edges = _edges(faces)
     problems = []
@@ -281,12 +281,12 @@ def _vertices(rings: dict[int, Ring], faces: Sequence[Face]) -> tuple[Floats, di
         count += vertex[start] == count
     if count - len(index) // 2 + len(rings) != 2:
         raise PolyhedronError("the faces close no surface")
-    # Every face has computed where its edges begin. They agree but for rounding, and no plane is far from their mean.
+    # Every face has computed where its edges begin. Rounding aside they agree, and any of them will do.
     begin = {(k, i): p for k, face in enumerate(faces) for i, p in zip(face.neighbors, _points(face), strict=True)}
-    sums = np.zeros((count, 3))
-    np.add.at(sums, vertex, [begin[pair] for pair in index])
-    places = iter(vertex)
-    return sums / np.bincount(vertex)[:, None], {k: list(islice(places, len(ring))) for k, ring in rings.items()}
+    places = np.empty((count, 3))
+    places[vertex] = [begin[pair] for pair in index]
+    vertices = iter(vertex)
+    return places, {k: list(islice(vertices, len(ring))) for k, ring in rings.items()}
 
 
 def _triangulated(corners: Ring) -> list[list[int]]:
