@@ -90,6 +90,7 @@ def set_variant(variant: str = "auto") -> str:
 
     if mitsuba.variant() != variant:
         mitsuba.set_variant(variant)
+    _start_worker()
     register()
     return variant
 
@@ -106,6 +107,18 @@ def has_cuda() -> bool:
         return driver.cuInit(0) == 0 and driver.cuDeviceGetCount(ctypes.byref(count)) == 0 and count.value > 0
     except (OSError, AttributeError):
         return False
+
+
+@functools.cache
+def _start_worker() -> None:
+    """Give Dr.Jit a worker thread on a machine of one core too.
+
+    Without any, Mitsuba 3.9's `load_file` waits for ever for the scene that no one reads.
+    """
+    import drjit
+
+    if drjit.thread_count() < 2:
+        drjit.set_thread_count(2)
 
 
 @functools.cache

@@ -33,6 +33,21 @@ def test_same_bits_as_render(mi, textured, tmp_path, optimize):
     assert np.array_equal(exported, rendered.pixels)
 
 
+def test_loads_on_one_core(small_scene, tmp_path):
+    """Shows why `backend` starts a worker: without one Mitsuba's `load_file` never returns."""
+    import os
+    import subprocess
+    import sys
+
+    file = export_scene(small_scene, Settings(width=4, height=3), tmp_path / "out")[0]
+    program = (
+        f"import os; os.sched_setaffinity(0, {{{min(os.sched_getaffinity(0))}}})\n"
+        "import mitsuba_plugins; mitsuba_plugins.set_variant('llvm_ad_rgb')\n"
+        f"import mitsuba; mitsuba.load_file({str(file)!r})"
+    )
+    subprocess.run([sys.executable, "-c", program], check=True, timeout=60)
+
+
 def test_meshes_too(mi, textured, tmp_path):
     """With the intersections through Embree, so that the PLY files are what is hit."""
     settings = Settings(width=160, height=120)

@@ -2,6 +2,8 @@
 
 import os
 import time
+from collections.abc import Iterator
+from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
 
@@ -41,7 +43,7 @@ class MitsubaRenderer:
         import numpy as np
 
         started = time.perf_counter()
-        variant = self._start(settings)
+        variant = self._start()
         ready = time.perf_counter()
         mitsuba_scene = self._load(scene, settings)
         built = time.perf_counter()
@@ -55,38 +57,47 @@ class MitsubaRenderer:
             return Rendering(pixels, settings.width, settings.height, seconds, statistics)
 
         try:
-            for first, color in integrator.bands(mitsuba_scene, mitsuba_scene.sensors()[0]):
-                rows = np.moveaxis(np.asarray(color), 0, -1).reshape(-1, settings.width, 3)
-                pixels[first : first + len(rows)] = rows
-                if progress is not None:
-                    progress((first + len(rows)) / settings.height)
+            with _threads(settings.threads):
+                for first, color in integrator.bands(mitsuba_scene, mitsuba_scene.sensors()[0]):
+                    rows = np.moveaxis(np.asarray(color), 0, -1).reshape(-1, settings.width, 3)
+                    pixels[first : first + len(rows)] = rows
+                    if progress is not None:
+                        progress((first + len(rows)) / settings.height)
         except KeyboardInterrupt:
             raise Interrupted(rendering()) from None
         return rendering()
 
     def trace_pixel(self, scene: Scene, settings: Settings, x: int, y: int) -> dict[str, Any]:
         """Trace one pixel; the result is what `NativeRenderer.trace_pixel` documents."""
-        self._start(settings)
+        self._start()
         from converter.renderers.mitsuba_pixel import trace_pixel
 
         return trace_pixel(self._load(scene, settings), settings, x, y)
 
-    def _start(self, settings: Settings) -> str:
+    def _start(self) -> str:
         """Load Mitsuba, and return the variant."""
         from mitsuba_plugins import BackendError, set_variant
 
         try:
-            variant = set_variant(self.variant)
+            return set_variant(self.variant)
         except (BackendError, ImportError) as error:
             raise RendererUnavailable(str(error)) from error
-        import drjit as dr
-
-        # 0 is all cores; a number that Dr.Jit was given before stays in force until another is given.
-        dr.set_thread_count(settings.threads or len(os.sched_getaffinity(0)))
-        return variant
 
     def _load(self, scene: Scene, settings: Settings) -> Any:
         from converter.to_mitsuba.load import load_description
         from converter.to_mitsuba.scene import scene_description
 
         return load_description(scene_description(scene, settings, self.intersections))
+
+
+@contextmanager
+def _threads(count: int) -> Iterator[None]:
+    """Let Dr.Jit use `count` threads for a while; 0 is all cores."""
+    import drjit as dr
+
+    before = dr.thread_count()
+    dr.set_thread_count(count or len(os.sched_getaffinity(0)))
+    try:
+        yield
+    finally:
+        dr.set_thread_count(before)
