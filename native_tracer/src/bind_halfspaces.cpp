@@ -11,6 +11,7 @@
 #include <cstdint>
 #include <stdexcept>
 #include <string>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -83,11 +84,18 @@ void for_each_index(std::size_t count, Work work) {
             work(i);
         }
     };
-    std::vector<std::jthread> threads;
-    for (std::size_t i = 1; i < thread_count; ++i) {
-        threads.emplace_back(loop);
+    std::vector<std::thread> threads;
+    try {
+        for (std::size_t i = 1; i < thread_count; ++i) {
+            threads.emplace_back(loop);
+        }
+    } catch (const std::system_error&) {
+        // Fewer will do.
     }
     loop();
+    for (std::thread& thread : threads) {
+        thread.join();
+    }
 }
 
 nb::tuple describe(const Result& result) {
@@ -147,7 +155,7 @@ nb::list faces(const Coefficients& coefficients) {
     if (planes.size() < all.size()) {
         // Once more without the planes that only touch the body: then every edge has its two proper neighbours.
         const Body again = whitted::halfspaces::body_of(planes, faces);
-        if (!again.bounded || again.kept.size() < planes.size()) {
+        if (!again.solid || !again.bounded || again.kept.size() < planes.size()) {
             return list;  // it is those planes' roundings that bound the body
         }
     }
