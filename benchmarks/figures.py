@@ -6,6 +6,7 @@ Times are medians of runs that take turns, so that a machine whose speed drifts 
 machine, their ratios much less. POV-Ray joins where it is installed.
 """
 
+import math
 import os
 import re
 import shutil
@@ -63,7 +64,7 @@ def speed() -> None:
     def seconds(renderer: Renderer) -> Callable[[], float]:
         return lambda: renderer.render(scene, settings).seconds["render"]
 
-    print(f"Figure 1 at 800 x 600, {len(os.sched_getaffinity(0))} threads, median seconds of {RUNS} runs in turn")
+    print(f"Figure 1 at 800 x 600, {len(os.sched_getaffinity(0))} threads, seconds of {RUNS} runs in turn")
     with tempfile.TemporaryDirectory() as folder:
         subjects = {
             "native double": seconds(NativeRenderer()),
@@ -76,9 +77,11 @@ def speed() -> None:
         if shutil.which("povray"):
             subjects["POV-Ray (trace time)"] = _povray
         times = _interleaved(subjects)
-    for name, median in times.items():
-        versus = f"{times['POV-Ray (trace time)'] / median:8.1f} x" if "POV-Ray (trace time)" in times else ""
-        print(f"{name:<26}{median:>9.4f}{versus}")
+    print(f"{'':<26}{'median':>9}{'least':>9}{'faster than POV-Ray, medians':>32}")
+    povray = statistics.median(times.get("POV-Ray (trace time)", [math.nan]))
+    for name, values in times.items():
+        median = statistics.median(values)
+        print(f"{name:<26}{median:>9.4f}{min(values):>9.4f}{povray / median:>30.1f} x")
 
 
 def memory() -> None:
@@ -97,13 +100,13 @@ def memory() -> None:
         print(f"{renderer:<10}{usage.ru_maxrss / 1024:>8.0f} MiB")
 
 
-def _interleaved(subjects: dict[str, Callable[[], float]]) -> dict[str, float]:
-    """Median seconds of each subject over RUNS rounds, after one that is not counted."""
+def _interleaved(subjects: dict[str, Callable[[], float]]) -> dict[str, list[float]]:
+    """Seconds of each subject in RUNS rounds, after one that is not counted."""
     times: dict[str, list[float]] = {name: [] for name in subjects}
     for _ in range(RUNS + 1):
         for name, subject in subjects.items():
             times[name].append(subject())
-    return {name: statistics.median(values[1:]) for name, values in times.items()}
+    return {name: values[1:] for name, values in times.items()}
 
 
 def _process(program: str, *arguments: str | Path) -> Callable[[], float]:
