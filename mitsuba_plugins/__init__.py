@@ -4,7 +4,7 @@
     import mitsuba_plugins
 
     mitsuba_plugins.set_variant("auto")
-    image = mitsuba.render(mitsuba.load_file("scene.xml"))
+    image = mitsuba.render(mitsuba.load_file("scene.xml", optimize=False))
 
 Importing this package is cheap and loads neither Mitsuba nor LLVM; `set_variant` and `register` do.
 """

@@ -43,5 +43,5 @@ def run(arguments: argparse.Namespace) -> int:
         if len(files) > MOST_LISTED:
             print(f"... and {len(files) - MOST_LISTED} more")
         print("\nIn Python:\n\nimport mitsuba, mitsuba_plugins; mitsuba_plugins.set_variant()")
-        print(f"image = mitsuba.render(mitsuba.load_file({str(files[0])!r}))")
+        print(f"image = mitsuba.render(mitsuba.load_file({str(files[0])!r}, optimize=False))")
     return OK

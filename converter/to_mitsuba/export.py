@@ -28,7 +28,7 @@ ELEMENTS = {
 README = """\
 A Mitsuba 3 scene, written by `whitted convert`. Its plugins come with the Python package `whitted`. To render it:
 python -c "import mitsuba_plugins as p, mitsuba as mi; p.set_variant(); \\
-mi.util.write_bitmap('out.exr', mi.render(mi.load_file('scene.xml')))"
+mi.util.write_bitmap('out.exr', mi.render(mi.load_file('scene.xml', optimize=False)))"
 """
 
 

@@ -110,7 +110,10 @@ class Whitted(mi.SamplingIntegrator):
         shapes = {shape.id(): shape for shape in scene.shapes()}
         missing = [surface.name for surface in self.surfaces if surface.name not in shapes]
         if missing or len(shapes) != len(self.surfaces):
-            raise ValueError(f"whitted: 'geometry' and the scene's shapes differ: {missing or list(shapes)[:8]}")
+            raise ValueError(
+                "whitted: the scene's shapes are not those of 'geometry'. Mitsuba merges meshes of one material unless "
+                "it is told not to: mitsuba.load_file(..., optimize=False), mitsuba.load_dict(..., optimize=False)"
+            )
         if self._scene is not scene:
             self._scene = scene
             self._records = Records(self.surfaces)
