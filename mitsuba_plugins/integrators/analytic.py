@@ -65,7 +65,8 @@ class AnalyticSurfaces:
         """Distance to one surface (infinite or NaN for none: compare with <) and the record that is met."""
         own = ray.object == index
         if self._spheres[index] is not None:
-            return sphere_distance(*self._spheres[index], ray, own), mi.UInt32(self._first[index])
+            center, radius = self._spheres[index]
+            return sphere_distance(center, radius, ray, own), mi.UInt32(self._first[index])
         if self._bounds[index] is not None:
             return self._intersect_bounded(index, ray, own)
         return self._intersect_planes(index, ray, own)

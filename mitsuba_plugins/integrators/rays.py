@@ -78,27 +78,22 @@ def spawn(hit: Hit, d: Any, inside: Any) -> Ray:
     return Ray(mi.Point3d(hit.p), mi.Vector3d(d), hit.object, hit.record, inside, reach * (ERROR_BOUND * EPSILON))
 
 
-@dr.syntax
 def sphere_distance(center: Any, radius: Any, ray: Ray, own: Any) -> Any:
-    """Distance to a sphere, infinite for none; `own` where the ray starts on it.
+    """Distance to a sphere, infinite or NaN for none (compare with <); `own` where the ray starts on it.
 
     Haines, Gunther and Akenine-Moller, Precision Improvements for Ray/Sphere Intersection, Ray Tracing Gems ch. 7.
     """
     f = ray.o - center
     b = -dr.dot(f, ray.d)
     discriminant = radius * radius - dr.squared_norm(f + b * ray.d)
-    t = dr.full(mi.Float64, dr.inf, dr.width(ray.d))
-    # A branch and no mask: most packets of rays miss most spheres and save the root and the division.
-    if discriminant >= 0:
-        root = dr.sqrt(discriminant)
-        q = b + dr.copysign(root, b)
-        other = (dr.squared_norm(f) - radius * radius) / q
-        near, far = dr.minimum(q, other), dr.maximum(q, other)
-        t_other = dr.select(near > ray.t_min, near, dr.select(far > ray.t_min, far, dr.inf))
-        # A ray that starts on this sphere leaves it for good, or crosses it to the far root.
-        t_own = dr.select(ray.inside & (far > 0), far, dr.inf)
-        t = dr.select(own, t_own, t_other)
-    return t
+    root = dr.sqrt(discriminant)  # NaN where the ray misses: no comparison with it holds
+    q = b + dr.copysign(root, b)
+    other = (dr.squared_norm(f) - radius * radius) / q
+    near, far = dr.minimum(q, other), dr.maximum(q, other)
+    t_other = dr.select(near > ray.t_min, near, dr.select(far > ray.t_min, far, dr.inf))
+    # A ray that starts on this sphere leaves it for good, or crosses it to the far root.
+    t_own = dr.select(ray.inside & (far > 0), far, dr.inf)
+    return dr.select(own, t_own, t_other)
 
 
 def unit(v: Any) -> Any:
