@@ -1,4 +1,4 @@
-"""The compiled tracer; `native_tracer` and `native_tracer.halfspaces` are its public faces."""
+"""The compiled tracer; `native_tracer`, `native_tracer.halfspaces` and `native_tracer.bvh` are its public faces."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, Literal, TypedDict, overload
@@ -116,6 +116,9 @@ def trace_pixel(
 
 def quantize(pixels: Buffer) -> bytes:
     """8-bit RGB of a float32 buffer: round(255 c), c clamped to 0..1, a NaN black."""
+
+def threaded_bvh(low: Buffer, high: Buffer) -> tuple[memoryview[float], memoryview[int], memoryview[int]]:
+    """The arrays of a threaded tree over boxes; see `native_tracer.bvh`."""
 
 def halfspace_bodies(coefficients: Buffer, offsets: Buffer) -> list[tuple[Any, ...]]:
     """What is known of each intersection of half-spaces; see `native_tracer.halfspaces`."""

@@ -1,4 +1,5 @@
-// The Python module: a builder for scenes here, rendering in bind_render.cpp, half-spaces in bind_halfspaces.cpp.
+// The Python module: a builder for scenes here, rendering in bind_render.cpp, half-spaces in bind_halfspaces.cpp,
+// trees over boxes in bind_bvh.cpp.
 
 #include "bindings.h"
 
@@ -171,4 +172,5 @@ NB_MODULE(_core, module) {
     bind_scene(module);
     bind_render(module);
     bind_halfspaces(module);
+    bind_bvh(module);
 }

@@ -7,3 +7,4 @@
 void bind_scene(nanobind::module_& module);
 void bind_render(nanobind::module_& module);
 void bind_halfspaces(nanobind::module_& module);
+void bind_bvh(nanobind::module_& module);
