@@ -11,7 +11,7 @@ import argparse
 import math
 import struct
 import zlib
-from collections.abc import Callable, Iterable, Sequence
+from collections.abc import Callable, Iterable, Iterator, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -281,6 +281,8 @@ def numbers(values: Iterable[float]) -> str:
 class SceneText:
     """A scene that is being written. Pigments and finishes are added before they are used, and known by their index."""
 
+    script = "generate.py"
+
     def __init__(self, comment: str, eye: Vector, look_at: Vector, fovy: float, ambient: Color = (1, 1, 1)) -> None:
         self.comment = comment
         self._camera = f"{numbers(eye)}\n{numbers(look_at)}\n0 1 0\n{number(fovy)}"
@@ -326,7 +328,7 @@ class SceneText:
 
     def __str__(self) -> str:
         comment = "\n".join(f"# {line}".rstrip() for line in self.comment.strip().splitlines())
-        parts = [f"{comment}\n# Computed by generate.py.\n{self._camera}"]
+        parts = [f"{comment}\n# Computed by {self.script}.\n{self._camera}"]
         for entries in (self._lights, self._pigments, self._finishes, self._objects):
             parts.append("\n".join([str(len(entries)), *entries]))
         return "\n\n".join(parts) + "\n"
@@ -784,6 +786,28 @@ def checker() -> SceneText:
     return s
 
 
+def flake(
+    center: Vector, radius: float, up: Vector, generations: int, generation: int = 0
+) -> Iterator[tuple[int, Vector, float]]:
+    """Generation, centre and radius of each ball of a sphereflake: a ball, and on it, about `up`, nine smaller flakes.
+
+    Six stand around its equator, three on its northern half, each a third of its size. So does `balls` of Haines,
+    "A Proposal for Standard Graphics Environments", IEEE Computer Graphics and Applications 7(11), 1987.
+    """
+    yield generation, center, radius
+    if generation + 1 == generations:
+        return
+    tilt = math.degrees(math.acos(up[1]))
+    azimuth = math.degrees(math.atan2(-up[2], up[0]))
+    for count, latitude, start in ((6, 0.0, 0.0), (3, 54.735610, 30.0)):
+        for k in range(count):
+            direction = turned(turned((1, 0, 0), 2, latitude), 1, start + 360 * k / count)
+            # From about the y axis to about `up`.
+            direction = turned(turned(direction, 2, -tilt), 1, azimuth)
+            apart = scale(direction, radius * 4 / 3)
+            yield from flake(add(center, apart), radius / 3, direction, generations, generation + 1)
+
+
 def sphereflake() -> SceneText:
     """Balls on balls."""
     s = SceneText(
@@ -804,20 +828,8 @@ def sphereflake() -> SceneText:
     s.sphere(sky, shine, (0, 0, 0), 800)
     s.polyhedron(floor, ground, [top(-0.72)])
 
-    def grow(center: Vector, radius: float, up: Vector, generation: int) -> None:
+    for generation, center, radius in flake((0, 0.3, 0), 1, unit((0.25, 1, -0.2)), 3):
         s.sphere(pigments[generation], mirror, center, radius)
-        if generation + 1 == len(pigments):
-            return
-        tilt = math.degrees(math.acos(up[1]))
-        azimuth = math.degrees(math.atan2(-up[2], up[0]))
-        for count, latitude, start in ((6, 0.0, 0.0), (3, 54.735610, 30.0)):
-            for k in range(count):
-                direction = turned(turned((1, 0, 0), 2, latitude), 1, start + 360 * k / count)
-                # From about the y axis to about `up`.
-                direction = turned(turned(direction, 2, -tilt), 1, azimuth)
-                grow(add(center, scale(direction, radius * 4 / 3)), radius / 3, direction, generation + 1)
-
-    grow((0, 0.3, 0), 1, unit((0.25, 1, -0.2)), 0)
     return s
 
 
