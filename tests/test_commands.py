@@ -500,9 +500,33 @@ def test_inspect_json(whitted, scene, tmp_path):
     assert found["finishes"][2]["ior_read_as"] == "n2/n1"
     assert found["finishes"][0]["ior_read_as"] is None
     assert [pigment["objects"] for pigment in found["pigments"]] == [2, 1, 0]
+    assert 0 < found["cutoff"]["bound"] < 1
     assert len(found["notices"]) == 1
     whitted("inspect", scene, "--json", tmp_path / "a.json", "--max-depth", "5")
     assert json.loads((tmp_path / "a.json").read_text()) == found
+
+
+@pytest.mark.parametrize(
+    ("old", "new", "cutoff", "told"),
+    [
+        (".1 .1 .3 100 .1 .8 1.5", "1 0 0 1 0 0 0", 1 / 512, "1/512: no channel is off by more than 0.00"),
+        (".1 .1 .3 100 .1 .8 1.5", "1 0 0 1 0 0 0", 0, "0: drops no ray"),
+        (".2 .6 .3 20 .2 0 0", "1 0 0 1 0 0 0", 0.3, "0.3: no channel is off by more than "),
+        (
+            "5 5 -9 .8 .8 .8 1 0 0",
+            "1 0 0 .8 .8 .8 0 1 0",
+            1 / 512,
+            "light 1's attenuation may be 0 on object 0 (line 17)",
+        ),
+    ],
+)
+def test_inspect_tells_what_the_cut_off_costs(whitted, tmp_path, old, new, cutoff, told):
+    file = tmp_path / "a.in"
+    file.write_text(SCENE.replace(old, new))
+    status, out, _ = whitted("inspect", file, "--cutoff", cutoff)
+    (line,) = [line for line in out.splitlines() if line.startswith("cut-off")]
+    assert status == 0
+    assert told in line
 
 
 def test_inspect_finds_planes_that_cut_nothing(whitted, tmp_path):

@@ -1,6 +1,7 @@
 """`whitted inspect`: what a scene file holds, and what it needs of a renderer."""
 
 import argparse
+import math
 from pathlib import Path
 from typing import Any
 
@@ -119,10 +120,28 @@ def _overview(found: dict[str, Any]) -> list[tuple[str, str]]:
     if bounces:
         split = "rays split in two" if needs["branches"] else "every ray has one successor"
         rows.append(("depth", f"{needs['max_depth']} bounces, {split}"))
+    rows.append(("cut-off", _cutoff(found["cutoff"])))
     for kind, indices in unused.items():
         if indices:
             rows.append((f"unused {kind}", _indices(indices)))
     return rows
+
+
+def _cutoff(found: dict[str, Any]) -> str:
+    """E.g. "1/512: no channel is off by more than 0.0041 (1.04 of 255 levels)"."""
+    cutoff, bound = found["cutoff"], found["bound"]
+    share = f"1/{1 / cutoff:.0f}" if cutoff and (1 / cutoff).is_integer() else f"{cutoff:g}"
+    if found["unbounded_by"]:
+        return f"{share}: no telling how far channels are off, for {found['unbounded_by']}"
+    if bound == 0:
+        return f"{share}: drops no ray"
+    return f"{share}: no channel is off by more than {_rounded_up(bound)} ({_rounded_up(255 * bound)} of 255 levels)"
+
+
+def _rounded_up(value: float) -> str:
+    """Three digits of a positive number, none of which promises too much."""
+    unit = 10.0 ** (math.floor(math.log10(value)) - 2)
+    return f"{math.ceil(value / unit) * unit:.3g}"
 
 
 def _print_rows(title: str, header: tuple[str, ...], align: str, rows: list[tuple[str, ...]]) -> None:

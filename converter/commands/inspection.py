@@ -4,6 +4,7 @@ from collections import Counter
 from dataclasses import asdict
 from typing import Any
 
+from converter.scene.cutoff import cutoff_bound
 from converter.scene.model import Checker, Finish, Pigment, Polyhedron, Scene, Solid
 from converter.scene.needs import SceneNeeds, is_index, scene_needs
 from converter.scene.notices import scene_notices
@@ -43,6 +44,7 @@ def inspect_scene(scene: Scene, settings: Settings) -> dict[str, Any]:
             "glossy": needs.glossy,
             "max_depth": needs.max_depth,
         },
+        "cutoff": asdict(cutoff_bound(scene, settings)),
         "notices": scene_notices(scene, settings),
     }
 

@@ -65,9 +65,7 @@ def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
     refracts = any(f.kt > 0 and f.kt >= settings.cutoff for f in used)
     branches = any(min(f.kr, f.kt) > 0 and min(f.kr, f.kt) >= settings.cutoff for f in used)
     facts = _polyhedron_facts(scene)
-    max_depth = settings.max_depth if settings.max_depth is not None else default_depth(used, settings.cutoff)
-    if not (reflects or refracts):
-        max_depth = 0
+    max_depth = depth_limit(used, settings)
     bounces = max_depth > 0
     return SceneNeeds(
         pigments=tuple(sorted({o.pigment for o in scene.objects})),
@@ -101,6 +99,13 @@ def _polyhedron_facts(scene: Scene) -> "list[PolyhedronFacts | None]":
 
     facts = iter(polyhedron_facts(polyhedra))
     return [next(facts) if isinstance(o.shape, Polyhedron) else None for o in scene.objects]
+
+
+def depth_limit(finishes: list[Finish], settings: Settings) -> int:
+    """Bounces that are followed after a primary ray where objects have these finishes."""
+    if not any(weight > 0 and weight >= settings.cutoff for f in finishes for weight in (f.kr, f.kt)):
+        return 0
+    return default_depth(finishes, settings.cutoff) if settings.max_depth is None else settings.max_depth
 
 
 def default_depth(finishes: list[Finish], cutoff: float) -> int:
