@@ -1,5 +1,7 @@
 """What a scene needs, what is told of it, and which `ior` is which."""
 
+import gc
+from collections.abc import Iterable, Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -9,12 +11,15 @@ from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 from strategies import scenes
 
-from converter.scene.model import Camera, Finish, Light, Object, Scene, Solid, Sphere
+from converter.scene import geometry
+from converter.scene.model import Camera, Finish, Light, Object, Polyhedron, Scene, Solid, Sphere
 from converter.scene.needs import MAX_DEPTH, MAX_DEPTH_BRANCHING, eta, is_index, scene_needs
 from converter.scene.notices import scene_notices
-from converter.scene.parser import parse_scene
+from converter.scene.parser import load_scene, parse_scene
 from converter.scene.settings import IorReading, Settings
 from converter.scene.writer import write_scene
+from converter.to_mitsuba.bounds import scene_bounds
+from native_tracer.halfspaces import PolyhedronFacts, polyhedron_facts
 
 MATTE = Finish(0.2, 0.8, 0, 1, 0, 0, 0)
 SHINY = Finish(0.2, 0.5, 0.5, 50, 0, 0, 0)
@@ -184,3 +189,29 @@ def test_a_scene_made_by_a_program_has_notices_too() -> None:
 )
 def test_nothing_to_tell(scene: Scene, settings: Settings) -> None:
     assert scene_notices(scene, settings) == []
+
+
+def test_facts_of_polyhedra_are_worked_out_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
+    calls = []
+
+    def counted(polyhedra: Iterable[Sequence[Sequence[float]]]) -> list[PolyhedronFacts]:
+        calls.append(1)
+        return polyhedron_facts(polyhedra)
+
+    monkeypatch.setattr(geometry, "polyhedron_facts", counted)
+    cube = Polyhedron(((1, 0, 0, -1), (-1, 0, 0, -1), (0, 1, 0, -1), (0, -1, 0, -1), (0, 0, 1, -1), (0, 0, -1, -1)))
+    wedge = Polyhedron(((0, 1, 0, -1), (1, 0, 0, -2)))
+    file = tmp_path / "a.in"
+    file.write_text(write_scene(replace(scene_of(MATTE), objects=(Object(0, 0, cube), Object(0, 0, wedge)))))
+    scene = load_scene(file)
+    needs = scene_needs(scene, Settings())
+    scene_bounds(scene)
+    assert needs.bounded == (True, False)
+    assert len(calls) == 1
+    smaller = replace(scene, objects=scene.objects[1:])
+    assert scene_needs(smaller, Settings()).bounded == (False,)
+    assert scene_needs(scene, Settings()) == needs
+    assert len(calls) == 3
+    del scene
+    gc.collect()
+    assert geometry._latest is None

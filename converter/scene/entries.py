@@ -20,7 +20,6 @@ from converter.scene.model import (
     Light,
     Object,
     Pigment,
-    Plane,
     Polyhedron,
     Shape,
     Solid,
@@ -136,18 +135,19 @@ class Reader:
 
     def numbers(self, at: int, wanted: Numbers, head: int) -> tuple[float, ...]:
         """The numbers from the word `at` on, NaN for each that is none; `head` is the word that asks for them."""
-        end = at + len(wanted.fields)
-        words = self.words[at:end]
-        if end <= self.limit:
-            try:
-                values = tuple(map(float, words))
-            except ValueError:
-                pass
-            else:
-                plain = self.text.plain or not any("_" in word or not word.isascii() for word in words)  # see `number`
-                if plain and isfinite(sum(values)):  # then every term is finite
-                    return values
-        return self._faulty_numbers(at, wanted, head)
+        return self.good_numbers(at, len(wanted.fields)) or self._faulty_numbers(at, wanted, head)
+
+    def good_numbers(self, at: int, count: int) -> tuple[float, ...] | None:
+        """So many numbers, if so many words follow from the word `at` on, and every one of them is a number."""
+        if at + count > self.limit:
+            return None
+        words = self.words[at : at + count]
+        try:
+            values = tuple(map(float, words))
+        except ValueError:
+            return None
+        plain = self.text.plain or not any("_" in word or not word.isascii() for word in words)  # see `number`
+        return values if plain and isfinite(sum(values)) else None  # if the sum is finite, every term is
 
     def _faulty_numbers(self, at: int, wanted: Numbers, head: int) -> tuple[float, ...]:
         count = len(wanted.fields)
@@ -328,8 +328,12 @@ def _polyhedron(reader: Reader, at: int) -> tuple[Shape, int]:
     count = whole(word)
     if not count:
         raise Lost(at + 1, f"the polyhedron's number of planes must be a whole number from 1 on, found {shown(word)}")
-    planes: list[Plane] = []
     at += 2
+    if values := reader.good_numbers(at, 4 * count):
+        planes = list(zip(values[::4], values[1::4], values[2::4], values[3::4], strict=True))
+        if not any(a == b == c == 0 for a, b, c, _ in planes):
+            return Polyhedron(tuple(planes)), at + 4 * count
+    planes = []
     for k in range(count):
         following = reader.words[at : min(at + 3, reader.limit)]
         if not following or following[0] in KEYWORDS or following[2:] == ["sphere"] or following[2:] == ["polyhedron"]:

@@ -2,6 +2,7 @@
 
 from collections.abc import Sequence
 from math import hypot
+from weakref import ReferenceType, ref
 
 from converter.scene.errors import Problem
 from converter.scene.model import Plane, Polyhedron, Scene
@@ -10,10 +11,27 @@ from native_tracer.halfspaces import PolyhedronFacts, polyhedron_facts
 __all__ = ["PolyhedronFacts", "check_geometry", "scene_facts"]
 
 
+_latest: tuple[ReferenceType[Scene], tuple[PolyhedronFacts | None, ...]] | None = None
+
+
 def scene_facts(scene: Scene) -> tuple[PolyhedronFacts | None, ...]:
-    """For each object what is known of its polyhedron; None if it is something else. All in one go."""
-    facts = iter(polyhedron_facts(o.shape.planes for o in scene.objects if isinstance(o.shape, Polyhedron)))
-    return tuple(next(facts) if isinstance(o.shape, Polyhedron) else None for o in scene.objects)
+    """For each object what is known of its polyhedron; None if it is something else. All in one go.
+
+    The latest scene's facts are kept for as long as it lives: checking a scene, modelling it, and closing its unbounded
+    bodies take the same ones.
+    """
+    global _latest
+    if _latest is None or _latest[0]() is not scene:
+        facts = iter(polyhedron_facts(o.shape.planes for o in scene.objects if isinstance(o.shape, Polyhedron)))
+        found = tuple(next(facts) if isinstance(o.shape, Polyhedron) else None for o in scene.objects)
+        _latest = (ref(scene, _forget), found)
+    return _latest[1]
+
+
+def _forget(scene: ReferenceType[Scene]) -> None:
+    global _latest
+    if _latest is not None and _latest[0] is scene:
+        _latest = None
 
 
 def check_geometry(scene: Scene, facts: Sequence[PolyhedronFacts | None] | None = None) -> list[Problem]:

@@ -101,7 +101,7 @@ class Object:
     line: int = field(default=0, compare=False)
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, weakref_slot=True)
 class Scene:
     """A whole scene. `ambient` is the file's first light, whose position and attenuation mean nothing."""
 

@@ -8,6 +8,8 @@ from converter.scene.model import Color, Finish, Polyhedron, Scene, Shape, Spher
 from converter.scene.settings import IorReading, Settings
 
 if TYPE_CHECKING:
+    from collections.abc import Sequence
+
     from native_tracer.halfspaces import PolyhedronFacts
 
 MAX_DEPTH = 64
@@ -90,15 +92,13 @@ def _box(sphere: Shape) -> tuple[Vector, Vector]:
     return (x - r, y - r, z - r), (x + r, y + r, z + r)
 
 
-def _polyhedron_facts(scene: Scene) -> "list[PolyhedronFacts | None]":
+def _polyhedron_facts(scene: Scene) -> "Sequence[PolyhedronFacts | None]":
     """Facts about each object that is a polyhedron."""
-    polyhedra = [o.shape.planes for o in scene.objects if isinstance(o.shape, Polyhedron)]
-    if not polyhedra:
+    if not any(isinstance(o.shape, Polyhedron) for o in scene.objects):
         return [None] * len(scene.objects)
-    from native_tracer.halfspaces import polyhedron_facts
+    from converter.scene.geometry import scene_facts
 
-    facts = iter(polyhedron_facts(polyhedra))
-    return [next(facts) if isinstance(o.shape, Polyhedron) else None for o in scene.objects]
+    return scene_facts(scene)
 
 
 def depth_limit(finishes: list[Finish], settings: Settings) -> int:

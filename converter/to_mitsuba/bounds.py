@@ -6,9 +6,9 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from converter.scene.model import Polyhedron, Scene, Sphere, Vector
+from converter.scene.geometry import scene_facts
+from converter.scene.model import Scene, Sphere, Vector
 from converter.scene.settings import Settings
-from native_tracer.halfspaces import polyhedron_facts
 
 Floats = NDArray[np.float64]
 
@@ -56,15 +56,14 @@ def scene_bounds(scene: Scene, settings: Settings | None = None) -> Box:
     size = max([size, *(float(np.linalg.norm(eye - light.position)) for light in scene.lights)])
     enclosing: list[tuple[Floats, Floats]] = []
     heights: list[tuple[float, float]] = []  # of the eye above a polyhedron's planes, and how far that goes
-    facts = iter(polyhedron_facts(o.shape.planes for o in scene.objects if isinstance(o.shape, Polyhedron)))
-    for o in scene.objects:
+    for o, fact in zip(scene.objects, scene_facts(scene), strict=True):
         if isinstance(o.shape, Sphere):
             low, high = np.array(o.shape.center) - o.shape.radius, np.array(o.shape.center) + o.shape.radius
             distance = float(np.linalg.norm(eye - o.shape.center))
             size = max(size, distance + o.shape.radius)
             encloses = distance < o.shape.radius
         else:
-            fact = next(facts)
+            assert fact is not None
             low, high = np.array(fact.low), np.array(fact.high)
             planes = np.reshape([o.shape.planes[k] for k in fact.kept], (-1, 4))
             distances = planes @ [*eye, 1] / np.linalg.norm(planes[:, :3], axis=1)
