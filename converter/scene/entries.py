@@ -167,10 +167,10 @@ class Reader:
 
     def index(self, at: int, what: str, count: int) -> int:
         """The index at the word `at`, of one of `count` things; `what` is its name."""
-        word = self.word(at, what)
         good = self._indices[what]
-        if word in good:
-            return good[word]
+        if at < self.limit and self.words[at] in good:
+            return good[self.words[at]]
+        word = self.word(at, what)
         value = whole(word)
         if value is None:
             if is_name(word):
