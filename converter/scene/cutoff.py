@@ -49,7 +49,8 @@ Indices = NDArray[np.intp]
 MOST_WEIGHTS = 512
 """Intervals of weights that are told apart at one depth."""
 ROUNDING = 2.0**-20
-"""Part of the brightest colour by which two pictures may differ because their pixels are sums in single precision."""
+"""Part of the brightest colour by which two pictures may differ because their pixels are rounded to single precision,
+and by which a highlight may exceed 1."""
 SLACK = 2.0**-40
 """Part of a distance that its rounding, and a hit point's, may amount to."""
 
@@ -77,8 +78,8 @@ class CutoffBound:
 def cutoff_bound(scene: Scene, settings: Settings) -> CutoffBound:
     """The bound for `scene`, drawn with `settings`, derived above.
 
-    It holds for the native tracer in double precision and, as far as rounding goes that the scene magnifies no more
-    than there, for Mitsuba: kr and kt may be rounded to single precision, weights are products in double precision.
+    It holds where weights are products in double precision, of kr and kt in double or in single precision: for Mitsuba
+    and for the native tracer, but for its single precision, which may put a weight on the other side of the cut-off.
 
     Raises:
         ValueError: a texture cannot be read.
