@@ -28,6 +28,7 @@ MINIMUM_LLVM = 19
 """Dr.Jit 1.5 calls LLVM 14 and older missing, and aborts the process in code generation with 15 and 16."""
 
 _registered: set[str] = set()
+_named: "LlvmLibrary | None" = None
 
 
 class BackendError(Exception):
@@ -45,6 +46,8 @@ class LlvmLibrary:
 def find_llvm() -> LlvmLibrary | None:
     """Choose the LLVM library for Dr.Jit: DRJIT_LIBLLVM_PATH, else the wheel's, else the newest of the system's."""
     chosen = os.environ.get("DRJIT_LIBLLVM_PATH")
+    if _named is not None and chosen == str(_named.path):
+        return _named
     if chosen:
         return LlvmLibrary(Path(chosen), "DRJIT_LIBLLVM_PATH is set")
     wheel = sorted(Path(sys.prefix, "lib").glob("libLLVM.so.*"), key=_llvm_version)
@@ -54,6 +57,15 @@ def find_llvm() -> LlvmLibrary | None:
     if system is not None and _llvm_version(system) >= MINIMUM_LLVM:
         return LlvmLibrary(system, f"newest LLVM of the system, at least version {MINIMUM_LLVM}")
     return None
+
+
+def name_llvm() -> None:
+    """Name the LLVM library in the environment, where Dr.Jit looks when it is first imported."""
+    global _named
+    library = find_llvm()
+    if library is not None:
+        _named = library
+        os.environ["DRJIT_LIBLLVM_PATH"] = str(library.path)
 
 
 def _llvm_version(library: Path) -> int:
@@ -88,6 +100,8 @@ def set_variant(variant: str = "auto") -> str:
         raise BackendError("cuda_ad_rgb: no CUDA device answers on this machine; use --variant llvm_ad_rgb")
     import mitsuba
 
+    if variant == "llvm_ad_rgb":
+        _check_llvm()
     if mitsuba.variant() != variant:
         mitsuba.set_variant(variant)
     _start_worker()
@@ -123,7 +137,7 @@ def _start_worker() -> None:
 
 @functools.cache
 def _prepare_llvm() -> None:
-    """Name the LLVM library in the environment, where Dr.Jit looks when it first compiles."""
+    """Check that there is an LLVM library, and name it."""
     library = find_llvm()
     if library is None:
         raise BackendError(
@@ -135,7 +149,20 @@ def _prepare_llvm() -> None:
         ctypes.CDLL(str(library.path))
     except OSError as error:
         raise BackendError(f"the LLVM library {library.path} ({library.reason}) cannot be loaded: {error}") from error
-    os.environ["DRJIT_LIBLLVM_PATH"] = str(library.path)
+    name_llvm()
+
+
+@functools.cache
+def _check_llvm() -> None:
+    """Refuse an LLVM that would end the process: the system's, where Dr.Jit came first and saw no other named."""
+    import drjit
+
+    major = drjit.detail.llvm_version()[0]
+    if 0 <= major < MINIMUM_LLVM:
+        raise BackendError(
+            f"Dr.Jit has loaded LLVM {major}, and needs {MINIMUM_LLVM} or newer: import mitsuba_plugins before mitsuba "
+            "and drjit, or set DRJIT_LIBLLVM_PATH"
+        )
 
 
 def register() -> None:

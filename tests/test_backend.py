@@ -1,5 +1,7 @@
 """Which LLVM library and which variant are chosen, and what is said where there is none."""
 
+import subprocess
+import sys
 from pathlib import Path
 
 import pytest
@@ -80,3 +82,17 @@ def test_missing_device(monkeypatch):
     monkeypatch.setattr(backend, "has_cuda", lambda: False)
     with pytest.raises(mitsuba_plugins.BackendError, match="no CUDA device"):
         mitsuba_plugins.set_variant("cuda_ad_rgb")
+
+
+def test_refuses_an_llvm_that_dr_jit_took_by_itself(monkeypatch):
+    """As happens where Dr.Jit is imported before `mitsuba_plugins` has named another."""
+    drjit = pytest.importorskip("drjit")
+    monkeypatch.setattr(drjit.detail, "llvm_version", lambda: (15, 0, 6))
+    with pytest.raises(mitsuba_plugins.BackendError, match="import mitsuba_plugins before mitsuba"):
+        backend._check_llvm.__wrapped__()
+
+
+def test_names_the_library_before_dr_jit_looks():
+    program = "import os, mitsuba_plugins, drjit; print(drjit.detail.llvm_version()[0])"
+    found = subprocess.run([sys.executable, "-c", program], capture_output=True, text=True, check=True)
+    assert int(found.stdout) >= backend.MINIMUM_LLVM
