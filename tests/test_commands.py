@@ -683,7 +683,7 @@ def test_convert(whitted, scene, tmp_path, mi):
     assert f"{folder}/scene.xml\n" in out
     python = out[out.index("import mitsuba") :]
     assert len(python.splitlines()) == 2
-    assert f"load_file('{folder}/scene.xml', optimize=False)" in python
+    assert f"load_file('{folder}/scene.xml')" in python
     assert mi.load_file(str(folder / "scene.xml")).sensors()[0].film().crop_size()[0] == 40
 
 

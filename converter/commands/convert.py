@@ -42,6 +42,6 @@ def run(arguments: argparse.Namespace) -> int:
             print(file)
         if len(files) > MOST_LISTED:
             print(f"... and {len(files) - MOST_LISTED} more")
-        print("\nIn Python:\n\nimport mitsuba, mitsuba_plugins; mitsuba_plugins.set_variant()")
-        print(f"image = mitsuba.render(mitsuba.load_file({str(files[0])!r}, optimize=False))")
+        print("\nIn Python:\n\nimport mitsuba_plugins, mitsuba; mitsuba_plugins.set_variant()")
+        print(f"image = mitsuba.render(mitsuba.load_file({str(files[0])!r}))")
     return OK

@@ -10,7 +10,7 @@ from typing import Any
 from converter.renderers.base import Interrupted, Progress, RendererUnavailable, Rendering
 from converter.scene.model import Scene
 from converter.scene.settings import Settings
-from converter.to_mitsuba.integrator import Intersections
+from converter.to_mitsuba.integrator import Intersections, RayPrecision
 
 
 @dataclass(frozen=True)
@@ -19,12 +19,15 @@ class MitsubaRenderer:
 
     Attributes:
         variant: "llvm_ad_rgb", "cuda_ad_rgb", or "auto": CUDA where a device answers, else LLVM.
-        intersections: how the integrator finds what a ray hits, see its documentation.
+        intersections, precision: how the integrator finds what a ray hits, see its documentation.
+        sphere_tolerance: with "offset" and "ulp", spheres are meshes, off by no more than this share of their radius.
 
     """
 
     variant: str = "auto"
     intersections: Intersections = "auto"
+    precision: RayPrecision = "double"
+    sphere_tolerance: float | None = None
 
     @property
     def name(self) -> str:
@@ -53,7 +56,7 @@ class MitsubaRenderer:
 
         def rendering() -> Rendering:
             seconds = {"start": ready - started, "build": built - ready, "render": time.perf_counter() - built}
-            statistics = {"variant": variant, "intersections": integrator.intersections}
+            statistics = {"variant": variant, "intersections": integrator.intersections, "precision": integrator.precision}
             return Rendering(pixels, settings.width, settings.height, seconds, statistics)
 
         try:
@@ -87,7 +90,10 @@ class MitsubaRenderer:
         from converter.to_mitsuba.load import load_description
         from converter.to_mitsuba.scene import scene_description
 
-        return load_description(scene_description(scene, settings, self.intersections))
+        shapes = self.intersections in ("mesh", "offset", "ulp")
+        return load_description(
+            scene_description(scene, settings, self.intersections, self.precision, self.sphere_tolerance, shapes)
+        )
 
 
 @contextmanager

@@ -3,7 +3,7 @@
 from typing import Any
 
 from converter.scene.settings import Settings
-from mitsuba_plugins.integrators.rays import NOTHING
+from mitsuba_plugins.integrators.rays import NOTHING, lanes
 
 
 def trace_pixel(scene: Any, settings: Settings, x: int, y: int) -> dict[str, Any]:
@@ -38,7 +38,7 @@ class _PixelTracer:
         """A ray and everything below it."""
         # Numbers and no expressions of them: every step of every ray then runs the same few kernels.
         self._dr.make_opaque(ray)
-        hit = self._integrator.closest(ray, self._mi.Bool(True))
+        hit = self._integrator.closest(ray, lanes(1))
         self._dr.make_opaque(hit)
         record: dict[str, Any] = {
             "kind": kind,
@@ -100,7 +100,7 @@ class _PixelTracer:
         mi = self._mi
         records = []
         for i in range(self._integrator.light_count):
-            light = self._integrator.light(self._dr.opaque(mi.UInt32, i), ray, hit, finish, pigment, mi.Bool(True))
+            light = self._integrator.light(self._dr.opaque(mi.UInt32, i), ray, hit, finish, pigment, lanes(1))
             self._dr.eval(light)
             blocker = int(light.blocker[0])
             lit = light.cosine[0] > 0 and blocker == NOTHING

@@ -28,8 +28,12 @@ ELEMENTS = {
 README = """\
 A Mitsuba 3 scene, written by `whitted convert`. Its plugins come with the Python package `whitted`. To render it:
 python -c "import mitsuba_plugins as p, mitsuba as mi; p.set_variant(); \\
-mi.util.write_bitmap('out.exr', mi.render(mi.load_file('scene.xml', optimize=False)))"
+mi.util.write_bitmap('out.exr', mi.render(mi.load_file('scene.xml')))"
 """
+
+
+MOST_SHAPES = 1000
+"""Objects that become Mitsuba's shapes, at most: each is a plugin, and takes its time and memory when it is loaded."""
 
 
 class ExportError(Exception):
@@ -39,11 +43,14 @@ class ExportError(Exception):
 def export_scene(scene: Scene, settings: Settings, folder: Path) -> list[Path]:
     """Write `scene`, drawn with `settings`, for Mitsuba, and return the files written, scene.xml first.
 
+    A scene of more than `MOST_SHAPES` objects has exact surfaces only, which the `whitted` integrator draws, and no
+    shapes that other integrators see.
+
     Raises:
         ExportError: the folder holds something that this function did not write.
         TextureError, PolyhedronError, OSError: as `scene_description` and the file system have it.
     """
-    description = scene_description(scene, settings)
+    description = scene_description(scene, settings, with_shapes=len(scene.objects) <= MOST_SHAPES)
     _check_folder(folder)
     (folder / "meshes").mkdir(parents=True, exist_ok=True)
     (folder / "textures").mkdir(exist_ok=True)

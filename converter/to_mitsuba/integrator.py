@@ -8,7 +8,8 @@ from converter.scene.needs import SceneNeeds
 from converter.scene.settings import Settings
 from converter.to_mitsuba.lights import color
 
-Intersections = Literal["auto", "analytic", "mesh"]
+Intersections = Literal["auto", "analytic", "bvh", "mesh", "offset", "ulp"]
+RayPrecision = Literal["double", "float"]
 
 
 def integrator(
@@ -17,8 +18,10 @@ def integrator(
     settings: Settings,
     geometry: dict[str, Any],
     intersections: Intersections = "auto",
+    precision: RayPrecision = "double",
 ) -> dict[str, Any]:
-    """A `whitted` integrator; `geometry` maps each shape's name to its exact surface (see `surfaces`)."""
+    """A `whitted` integrator; `geometry` maps each object's name to its exact surface (see `surfaces`)."""
+    materials = sorted({surface["material"] for surface in geometry.values()})
     return {
         "type": "whitted",
         "geometry": json.dumps(geometry),
@@ -32,4 +35,6 @@ def integrator(
         "shadows": needs.lit,
         "highlights": needs.glossy,
         "intersections": intersections,
+        "precision": precision,
+        **{name: {"type": "ref", "id": name} for name in materials},
     }

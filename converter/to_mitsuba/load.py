@@ -42,12 +42,16 @@ def _load(mi: Any, name: str, element: dict[str, Any]) -> Any:
 
 
 def _mesh(mi: Any, name: str, mesh: Any, bsdf: Any) -> Any:
+    """A mesh with a normal for each face, or, where it has them, one for each vertex."""
     props = mi.Properties()
     props["mesh_bsdf"] = bsdf
-    props["face_normals"] = True
-    shape = mi.Mesh(name, len(mesh.vertices), len(mesh.triangles), props=props)
+    normals = getattr(mesh, "normals", None)
+    props["face_normals"] = normals is None
+    shape = mi.Mesh(name, len(mesh.vertices), len(mesh.triangles), has_vertex_normals=normals is not None, props=props)
     params = mi.traverse(shape)
     params["vertex_positions"] = np.ravel(mesh.vertices).astype(np.float32)
+    if normals is not None:
+        params["vertex_normals"] = np.ravel(normals).astype(np.float32)
     params["faces"] = np.ravel(mesh.triangles).astype(np.uint32)
     params.update()
     shape.set_id(name)

@@ -7,33 +7,47 @@ from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings
 from converter.to_mitsuba.camera import sensor
 from converter.to_mitsuba.finishes import bsdf
-from converter.to_mitsuba.integrator import Intersections, integrator
+from converter.to_mitsuba.integrator import Intersections, RayPrecision, integrator
 from converter.to_mitsuba.lights import light
 from converter.to_mitsuba.pigments import texture
-from converter.to_mitsuba.surfaces import surfaces
+from converter.to_mitsuba.surfaces import exact_surfaces, material_name, shapes
 
 
-def scene_description(scene: Scene, settings: Settings, intersections: Intersections = "auto") -> dict[str, Any]:
+def scene_description(
+    scene: Scene,
+    settings: Settings,
+    intersections: Intersections = "auto",
+    precision: RayPrecision = "double",
+    sphere_tolerance: float | None = None,
+    with_shapes: bool = True,
+) -> dict[str, Any]:
     """Everything that `scene`, drawn with `settings`, needs, by names that say where it stands in the scene file.
+
+    The integrator knows the exact surfaces. Mitsuba's shapes, which take their time, are for other integrators, and
+    for intersections that use them: "mesh", "offset", "ulp".
 
     Raises:
         TextureError: a texture that is used cannot be read.
-        PolyhedronError: a polyhedron cannot be made into a mesh.
+        PolyhedronError, ValueError: as `shapes` has it.
 
     """
     needs = scene_needs(scene, settings)
-    shapes, geometry = surfaces(scene, needs, settings)
-    pairs = sorted({(o.finish, o.pigment) for o in scene.objects})
+    geometry = exact_surfaces(scene, needs)
+    found: dict[str, Any] = {}
+    if with_shapes:
+        found, meshes = shapes(scene, settings, sphere_tolerance)
+        for name, facts in meshes.items():
+            geometry[name] |= facts
     description: dict[str, Any] = {
         "type": "scene",
         "embree_use_robust_intersections": True,
-        "integrator": integrator(scene, needs, settings, geometry, intersections),
         "sensor": sensor(scene.camera, settings),
     }
     description |= {f"pigment_{i}": texture(scene.pigments[i]) for i in needs.pigments}
-    for i, j in pairs:
-        pigment = {"type": "ref", "id": f"pigment_{j}"}
-        description[f"finish_{i}_pigment_{j}"] = bsdf(scene.finishes[i], needs.etas[i], pigment, settings)
+    for o in {(o.finish, o.pigment): o for o in scene.objects}.values():
+        pigment = {"type": "ref", "id": f"pigment_{o.pigment}"}
+        description[material_name(o)] = bsdf(scene.finishes[o.finish], needs.etas[o.finish], pigment, settings)
+    description["integrator"] = integrator(scene, needs, settings, geometry, intersections, precision)
     if needs.lit:
         description |= {f"light_{i}": light(source) for i, source in enumerate(scene.lights, start=1)}
-    return description | shapes
+    return description | found

@@ -1,11 +1,13 @@
 """The exact surfaces of a scene: what Mitsuba's single-precision shapes were made from, as the integrator needs it.
 
-The description is a JSON object with one entry a shape, named by the shape's id, in the order in which ties go:
+The description is a JSON object with one entry an object, named as its shape is where there is one, in the order in
+which ties go:
 
-    {"object_0": {"sphere": [x, y, z, r]},
-     "object_1": {"planes": {"0": [a, b, c, d], ...}, "triangles": [plane of each triangle of the mesh],
+    {"object_0": {"material": "name of a BSDF", "sphere": [x, y, z, r]},
+     "object_1": {"material": "name of a BSDF", "planes": {"0": [a, b, c, d], ...},
                   "box": [its lower corner, its upper corner] or null where it is unbounded,
-                  "deviation": largest distance of a mesh vertex from its planes}}
+                  "triangles": [plane of each triangle of its mesh], if it has one,
+                  "deviation": largest distance of a mesh vertex from its planes, likewise}}
 
 JSON writes the shortest digits that read back as the same double, so that nothing is lost in a file.
 """
@@ -15,6 +17,7 @@ import math
 from dataclasses import dataclass, field
 from typing import Any
 
+Vector = tuple[float, float, float]
 Plane = tuple[float, float, float, float]
 
 
@@ -23,14 +26,26 @@ class Surface:
     """A sphere (center, radius) or a convex polyhedron (planes with unit normals, by their index in the scene)."""
 
     name: str
+    material: str
     sphere: Plane | None = None
     planes: dict[int, Plane] = field(default_factory=dict)
-    bound: Plane | None = None  # a sphere around a bounded polyhedron
+    box: tuple[Vector, Vector] | None = None  # around it, with room for rounding; None where it is unbounded
     triangles: tuple[int, ...] = ()
     deviation: float = 0.0
 
 
-def parse_geometry(text: str) -> list[Surface]:
+class Geometry:
+    """The surfaces of a scene.
+
+    An object of a class that Dr.Jit does not know, since it looks for arrays in all lists, dictionaries and data classes
+    that a plugin holds, again for every loop and branch that it records.
+    """
+
+    def __init__(self, surfaces: list[Surface]) -> None:
+        self.surfaces = surfaces
+
+
+def parse_geometry(text: str) -> Geometry:
     """Read a description.
 
     Raises:
@@ -38,26 +53,26 @@ def parse_geometry(text: str) -> list[Surface]:
 
     """
     try:
-        return [_surface(name, entry) for name, entry in json.loads(text).items()]
+        return Geometry([_surface(name, entry) for name, entry in json.loads(text).items()])
     except (KeyError, TypeError, AttributeError, json.JSONDecodeError) as error:
         raise ValueError(f"whitted: 'geometry' does not describe surfaces: {error}") from error
 
 
 def _surface(name: str, entry: dict[str, Any]) -> Surface:
+    material = entry["material"]
     if "sphere" in entry:
         x, y, z, r = entry["sphere"]
-        return Surface(name, sphere=(x, y, z, r))
+        return Surface(name, material, (x, y, z, r), box=_roomy((x - r, y - r, z - r), (x + r, y + r, z + r)))
     planes = {int(index): _normalised(plane) for index, plane in entry["planes"].items()}
-    box = entry["box"]
-    bound = _sphere_around(*box) if box is not None else None
-    return Surface(name, None, planes, bound, tuple(entry["triangles"]), entry["deviation"])
+    box = _roomy(*entry["box"]) if entry["box"] is not None else None
+    return Surface(name, material, None, planes, box, tuple(entry.get("triangles", ())), entry.get("deviation", 0.0))
 
 
-def _sphere_around(low: list[float], high: list[float]) -> Plane:
-    x, y, z = ((a + b) / 2 for a, b in zip(low, high, strict=True))
-    # A little larger than the box, for the roundings here and in the kernel.
-    reach = max(map(abs, [*low, *high]))
-    return x, y, z, math.dist(low, high) / 2 + 1e-9 * reach
+def _roomy(low: Vector, high: Vector) -> tuple[Vector, Vector]:
+    """A box a little larger than the surface, for the roundings here and in the kernel."""
+    room = 1e-9 * max(map(abs, (*low, *high)))
+    (a, b, c), (d, e, f) = low, high
+    return (a - room, b - room, c - room), (d + room, e + room, f + room)
 
 
 def _normalised(plane: list[float]) -> Plane:

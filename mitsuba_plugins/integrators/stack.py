@@ -5,7 +5,7 @@ from typing import Any
 import drjit as dr
 import mitsuba as mi
 
-from mitsuba_plugins.integrators.rays import Ray
+from mitsuba_plugins.integrators.rays import Ray, Real
 
 
 class RayStack:
@@ -15,9 +15,10 @@ class RayStack:
     Indices and masks have full width: an index of width 1 would make all SIMD lanes use one slot.
     """
 
-    def __init__(self, size: int) -> None:
-        double, integer = mi.Float64, mi.UInt32
-        kinds = [double] * 7 + [integer] * 3 + [double, integer]
+    def __init__(self, types: Real, size: int) -> None:
+        self._types = types
+        number, integer = types.Float, mi.UInt32
+        kinds = [number] * 7 + [integer] * 3 + [number, integer]
         self._buffers = [dr.alloc_local(kind, size, value=kind(0)) for kind in kinds] if size else []
 
     def write(self, slot: Any, ray: Ray, weight: Any, depth: Any, active: Any) -> None:
@@ -32,5 +33,5 @@ class RayStack:
         ox, oy, oz, dx, dy, dz, t_min, index, record, inside, weight, depth = (
             buffer.read(slot, active) for buffer in self._buffers
         )
-        o, d = mi.Point3d(ox, oy, oz), mi.Vector3d(dx, dy, dz)
+        o, d = self._types.Point3(ox, oy, oz), self._types.Vector3(dx, dy, dz)
         return Ray(o, d, index, record, inside == 1, t_min), weight, depth

@@ -8,18 +8,23 @@ import drjit as dr
 import mitsuba as mi
 
 from mitsuba_plugins.integrators.analytic import AnalyticSurfaces
+from mitsuba_plugins.integrators.bvh import BvhSurfaces
+from mitsuba_plugins.integrators.exact import Records
 from mitsuba_plugins.integrators.geometry import parse_geometry
+from mitsuba_plugins.integrators.interactions import MitsubaSurfaces
 from mitsuba_plugins.integrators.mesh import MeshSurfaces
-from mitsuba_plugins.integrators.rays import NOTHING, Hit, Ray, lanes, power, reflect, refract, spawn, start_ray, unit
+from mitsuba_plugins.integrators.rays import NOTHING, Hit, Ray, lanes, power, real, reflect, refract, start_ray, unit
 from mitsuba_plugins.integrators.stack import RayStack
-from mitsuba_plugins.integrators.tables import Finish, Illumination, Lights, Materials, Records
+from mitsuba_plugins.integrators.tables import Finish, Illumination, Lights, Materials
 
+INTERSECTIONS = ("analytic", "bvh", "mesh", "offset", "ulp")
+"""Ways to find what a ray hits."""
 ANALYTIC_LIMIT = 32
-"""Spheres and planes, together, up to which `intersections` "auto" intersects them in the kernel."""
+"""Spheres and planes, together, up to which `intersections` "auto" is "analytic": its kernels grow with them."""
 
 FIRST_BAND, FIRST_BAND_BRANCHING = 1 << 19, 1 << 16
 """Primary rays traced at once to begin with; trees that branch may take a hundred times longer than others."""
-SMALLEST_BAND, LARGEST_BAND = 1 << 14, 1 << 20
+SMALLEST_BAND, LARGEST_BAND = 1 << 16, 1 << 20
 """Within these limits the size of a band is adapted ..."""
 BAND_SECONDS = 0.5
 """... to this time."""
@@ -37,6 +42,10 @@ class Whitted(mi.SamplingIntegrator):
      * - filename
        - |string|
        - A file that holds that text, instead of ``geometry``
+
+     * - (nested plugins)
+       - |bsdf|
+       - The materials of the surfaces, ``phong`` BSDFs, under the names that ``geometry`` uses
 
      * - ambient, background
        - |color|
@@ -64,12 +73,18 @@ class Whitted(mi.SamplingIntegrator):
 
      * - intersections
        - |string|
-       - ``analytic``: intersect spheres and half-spaces in the kernel; ``mesh``: let Embree or OptiX find which
-         surface is hit and compute where from the exact surface; ``auto``: the first for small scenes (Default: auto)
+       - ``analytic``: intersect spheres and half-spaces in the kernel, each with code of its own; ``bvh``: through a tree
+         of boxes; ``mesh``: let Embree or OptiX find which of the scene's shapes is hit and compute where from the exact
+         surface; ``offset``, ``ulp``: believe Embree or OptiX, and start rays off the surface by Mitsuba's own offset or
+         Waechter and Binder's; ``auto``: ``analytic`` for small scenes, else ``bvh`` (Default: auto)
 
-    Every surface wears a ``phong`` BSDF, every light is an ``attenuated_point``. Switching off what a scene does not
-    need makes it faster and changes nothing else. Rays keep their origins and directions in double precision from
-    bounce to bounce, and, where the sensor is a ``pinhole``, from the camera on. Whitted, An Improved Illumination
+     * - precision
+       - |string|
+       - ``double`` or ``float``: of rays and intersections; ``offset`` and ``ulp`` know ``float`` only (Default: double)
+
+    The scene's shapes are needed for ``mesh``, ``offset`` and ``ulp`` only. Every light is an ``attenuated_point``.
+    Switching off what a scene does not need makes it faster and changes nothing else. In double precision rays keep
+    their origins and directions so from bounce to bounce, and, where the sensor is a ``pinhole``, from the camera on. Whitted, An Improved Illumination
     Model for Shaded Display, Communications of the ACM 23(6), 1980. Not for indirect diffuse light, area lights or
     gradients.
     """
@@ -83,60 +98,65 @@ class Whitted(mi.SamplingIntegrator):
         else:
             with open(str(mi.file_resolver().resolve(props["filename"])), encoding="utf-8") as file:  # noqa: PTH123
                 text = file.read()
-        self.surfaces = parse_geometry(text)
+        self._geometry = parse_geometry(text)
+        self._bsdfs = _materials(props, self.surfaces)
         self.ambient = mi.Color3f(props.get("ambient", mi.ScalarColor3d(0.0)))
         self.background = mi.Color3f(props.get("background", mi.ScalarColor3d(0.0)))
         self.max_depth = mi.UInt32(props.get("max_depth", 16))
-        self.cutoff = mi.Float64(props.get("cutoff", 1 / 512))
+        self.intersections = props.get("intersections", "auto")
+        if self.intersections not in (*INTERSECTIONS, "auto"):
+            raise ValueError(f"whitted: intersections is one of {INTERSECTIONS} or auto, not '{self.intersections}'")
+        if self.intersections == "auto":
+            size = sum(max(len(surface.planes), 1) for surface in self.surfaces)
+            self.intersections = "analytic" if size <= ANALYTIC_LIMIT else "bvh"
+        self.precision = props.get("precision", "double")
+        if self.precision not in ("double", "float"):
+            raise ValueError(f"whitted: precision is double or float, not '{self.precision}'")
+        if self.intersections in ("offset", "ulp"):
+            self.precision = "float"
+        self.types = real(self.precision)
+        self.cutoff = self.types.Float(props.get("cutoff", 1 / 512))
         dr.make_opaque(self.ambient, self.background, self.max_depth, self.cutoff)
         self.reflection = props.get("reflection", True)
         self.refraction = props.get("refraction", True)
         self.branching = props.get("branching", True) and self.reflection and self.refraction
         self.shadows = props.get("shadows", True)
         self.highlights = props.get("highlights", True)
-        self.intersections = props.get("intersections", "auto")
-        if self.intersections not in ("auto", "analytic", "mesh"):
-            raise ValueError(f"whitted: intersections is analytic, mesh or auto, not '{self.intersections}'")
-        if self.intersections == "auto":
-            size = sum(max(len(surface.planes), 1) for surface in self.surfaces)
-            self.intersections = "analytic" if size <= ANALYTIC_LIMIT else "mesh"
         self.stack_size = max(1, props.get("max_depth", 16))
         self._scene = None
+
+    @property
+    def surfaces(self):
+        """The exact surfaces (list of Surface), in the order of their objects."""
+        return self._geometry.surfaces
 
     # ------------------------------------------------------------------ preparation
 
     def prepare(self, scene):
         """Lay out what the kernel reads: surfaces, finishes, pigments, lights. `render` and `sample` call it."""
-        shapes = {shape.id(): shape for shape in scene.shapes()}
-        missing = [surface.name for surface in self.surfaces if surface.name not in shapes]
-        if missing or len(shapes) != len(self.surfaces):
-            raise ValueError(
-                "whitted: the scene's shapes are not those of 'geometry'. Mitsuba merges meshes of one material unless "
-                "it is told not to: mitsuba.load_file(..., optimize=False), mitsuba.load_dict(..., optimize=False)"
-            )
         if self._scene is not scene:
             self._scene = scene
-            self._records = Records(self.surfaces)
-            self.first_records = self._records.first
+            records = Records(self.types, self.surfaces)
+            self.first_records = records.first
             self._tracer: Any
             if self.intersections == "analytic":
-                self._tracer = AnalyticSurfaces(self.surfaces, self.first_records)
+                self._tracer = AnalyticSurfaces(self.types, self.surfaces, records)
+            elif self.intersections == "bvh":
+                self._tracer = BvhSurfaces(self.types, self.surfaces, records)
+            elif self.intersections == "mesh":
+                self._tracer = MeshSurfaces(self.types, scene, self.surfaces, records)
             else:
-                self._tracer = MeshSurfaces(scene, self.surfaces, self._records)
+                self._tracer = MitsubaSurfaces(scene, self.surfaces, records, self.intersections)
         # Read anew each time: these are what mitsuba.traverse lets a user change.
-        self._materials = Materials([shapes[surface.name].bsdf() for surface in self.surfaces])
-        self._lights = Lights(scene.emitters())
+        self._materials = Materials(self.types, [self._bsdfs[surface.material] for surface in self.surfaces])
+        self._lights = Lights(self.types, scene.emitters())
         self.light_count = self._lights.count
 
     # ------------------------------------------------------------------ one ray
 
     def closest(self, ray: Ray, active) -> Hit:
-        """The first surface that a ray meets, the point moved onto it to shed the error along the normal."""
-        t, index, record = self._tracer.closest(ray, active)
-        valid = active & (index != NOTHING)
-        p, n = self._records.surface_point(index, record, ray.o + t * ray.d, valid)
-        inside = dr.select(index == ray.object, ray.inside, dr.dot(n, ray.d) > 0)
-        return Hit(valid, t, index, record, p, n, inside)
+        """The first surface that a ray meets."""
+        return self._tracer.closest(ray, active)
 
     def material(self, hit: Hit):
         """The finish and the pigment's colour at a hit."""
@@ -152,7 +172,7 @@ class Whitted(mi.SamplingIntegrator):
         n = dr.select(hit.inside, -hit.n, hit.n)
         cosine = dr.dot(n, to_light)
         facing = active & (cosine > 0)
-        blocker = self._tracer.blocker(spawn(hit, to_light, hit.inside), distance, facing)
+        blocker = self._tracer.blocker(hit, to_light, distance, facing)
         attenuation = a + distance * (b + distance * c)
         irradiance = (emission / mi.Float(attenuation)) & facing & (blocker == NOTHING)
         diffuse = irradiance * color * (finish.kd * mi.Float(cosine))
@@ -163,19 +183,18 @@ class Whitted(mi.SamplingIntegrator):
 
     def _highlight(self, ray: Ray, n, to_light, alpha):
         cosine = dr.dot(n, unit(to_light - ray.d)) if self._materials.blinn else dr.dot(reflect(ray.d, n), to_light)
-        # In double precision: an exponent of 1000 multiplies the cosine's relative error by 1000.
         return mi.Float(power(dr.maximum(cosine, 0), alpha))
 
     def reflected(self, ray: Ray, hit: Hit) -> Ray:
         """The mirrored ray."""
-        return spawn(hit, reflect(ray.d, hit.n), hit.inside)
+        return self._tracer.spawn(hit, reflect(ray.d, hit.n), hit.inside)
 
     def transmitted(self, ray: Ray, hit: Hit, eta) -> tuple[Ray, Any]:
         """The refracted ray, or the mirrored one past the critical angle, and whether it is past."""
         eta = dr.select(hit.inside, 1 / eta, eta)
         n = dr.select(hit.inside, -hit.n, hit.n)
         d, total = refract(ray.d, n, eta)
-        return spawn(hit, d, hit.inside == total), total
+        return self._tracer.spawn(hit, d, hit.inside == total), total
 
     # ------------------------------------------------------------------ the ray tree
 
@@ -188,11 +207,11 @@ class Whitted(mi.SamplingIntegrator):
         # Everything starts at full width: with an index of width 1, all SIMD lanes would share one stack.
         width = dr.width(ray.d)
         radiance = dr.zeros(mi.Color3f, width)
-        weight = dr.full(mi.Float64, 1, width)
+        weight = dr.full(self.types.Float, 1, width)
         depth = dr.zeros(mi.UInt32, width)
         active = active & lanes(width)
         waiting = dr.zeros(mi.UInt32, width)
-        stack = RayStack(self.stack_size if self.branching else 0)
+        stack = RayStack(self.types, self.stack_size if self.branching else 0)
         while active:
             hit = self.closest(ray, active)
             finish, color = self.material(hit)
@@ -229,7 +248,7 @@ class Whitted(mi.SamplingIntegrator):
     def _successor_weight(self, enabled, weight, active):
         """Weight of a mirrored or refracted ray, and where it is followed."""
         if not enabled:
-            return mi.Float64(0), mi.Bool(False)
+            return self.types.Float(0), mi.Bool(False)
         return weight, active & (weight > 0) & (weight >= self.cutoff)
 
     @dr.syntax
@@ -249,7 +268,7 @@ class Whitted(mi.SamplingIntegrator):
     def sample(self, scene, sampler, ray, medium=None, active=True):
         """Radiance along single-precision rays, of any sensor."""
         self.prepare(scene)
-        color = self.trace(start_ray(mi.Point3d(ray.o), unit(mi.Vector3d(ray.d))), active)
+        color = self.trace(start_ray(self.types, ray.o, unit(mi.Vector3d(ray.d))), active)
         return color, mi.Bool(active), []
 
     def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
@@ -316,24 +335,41 @@ class Whitted(mi.SamplingIntegrator):
             raise ValueError(f"whitted: samples per pixel are laid out as a grid, and {spp} is no square number")
         return [((cell % n + 0.5) / n, (cell // n + 0.5) / n) for cell in range(spp)]
 
-    @staticmethod
-    def primary_ray(sensor, position) -> Ray:
+    def primary_ray(self, sensor, position) -> Ray:
         """The ray through a film position (Point2d, in pixels), in double precision where the sensor has it."""
         if hasattr(sensor, "primary_ray"):
-            return start_ray(*sensor.primary_ray(position))
+            return start_ray(self.types, *sensor.primary_ray(position))
         size, offset = sensor.film().crop_size(), sensor.film().crop_offset()
         sample = mi.Point2f((position - mi.Point2d(offset)) / mi.Point2d(size))
         ray, _ = sensor.sample_ray(0.0, 0.5, sample, mi.Point2f(0.5))
-        return start_ray(mi.Point3d(ray.o), unit(mi.Vector3d(ray.d)))
+        return start_ray(self.types, ray.o, unit(mi.Vector3d(ray.d)))
 
     def traverse(self, callback):
         callback.put("ambient", self.ambient, mi.ParamFlags.NonDifferentiable)
         callback.put("background", self.background, mi.ParamFlags.NonDifferentiable)
         callback.put("cutoff", self.cutoff, mi.ParamFlags.NonDifferentiable)
         callback.put("max_depth", self.max_depth, mi.ParamFlags.NonDifferentiable)
+        for name, bsdf in self._bsdfs.items():
+            callback.put(name, bsdf, mi.ParamFlags.Differentiable)
 
     def to_string(self):
-        return f"Whitted[{len(self.surfaces)} surfaces, {self.intersections}, max_depth={self.max_depth}]"
+        return f"Whitted[{len(self.surfaces)} surfaces, {self.intersections}, {self.precision}, max_depth={self.max_depth}]"
+
+
+def _materials(props, surfaces):
+    """The nested BSDFs, by their names.
+
+    Raises:
+        ValueError: one is missing, or is no `phong`.
+
+    """
+    bsdfs = {name: plugin for name, plugin in props.objects() if isinstance(plugin, mi.BSDF)}
+    for name in {surface.material for surface in surfaces}:
+        if name not in bsdfs:
+            raise ValueError(f"whitted: 'geometry' names a material '{name}', and no BSDF of that name is nested")
+        if not hasattr(bsdfs[name], "COEFFICIENTS"):
+            raise ValueError(f"whitted: every material is a 'phong' BSDF, '{name}' is a {type(bsdfs[name]).__name__}")
+    return bsdfs
 
 
 def _block(bands, film):

@@ -1,0 +1,160 @@
+"""Intersection of rays with any number of spheres and convex polyhedra inside the kernel, through a tree of boxes.
+
+The tree is walked without a stack: its nodes lie in depth-first order, each with a link to the node that follows where
+its box is missed. There is one such order for every octant of directions, in which of two children the nearer comes
+first. Smits, Efficiency Issues for Ray Tracing, Journal of Graphics Tools 3(2), 1998.
+"""
+
+from typing import Any
+
+import drjit as dr
+import mitsuba as mi
+import numpy as np
+
+from mitsuba_plugins.integrators.exact import (
+    ExactSurfaces,
+    Records,
+    narrow,
+    passage_distance,
+    sphere_distance,
+    whole_ray,
+)
+from mitsuba_plugins.integrators.geometry import Surface
+from mitsuba_plugins.integrators.rays import NOTHING, Ray, Real
+from native_tracer.bvh import threaded_bvh
+
+SLACK = 2.0**-20
+"""By how much, relatively, a distance to a box may be wrong: some roundings to single precision."""
+
+
+class BvhSurfaces(ExactSurfaces):
+    """Surfaces in a tree of single-precision boxes, which are rounded outward: what they let through is exact."""
+
+    def __init__(self, types: Real, surfaces: list[Surface], records: Records) -> None:
+        super().__init__(records)
+        self._types = types
+        self._nodes, self._node_count = _nodes(surfaces)
+        self._any_sphere = any(surface.sphere is not None for surface in surfaces)
+        self._any_polyhedron = any(surface.sphere is None for surface in surfaces)
+        self._first = mi.UInt32(np.array(records.first or [0], dtype=np.uint32))
+        self._count = mi.UInt32(np.array([len(surface.planes) for surface in surfaces] or [0], dtype=np.uint32))
+        dr.make_opaque(self._nodes, self._node_count, self._first, self._count)
+
+    def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any]:
+        """Distance (infinite for none), object (NOTHING for none) and record of the first hit."""
+        return self._search(ray, self._types.Float(dr.inf), active, anything=False)
+
+    def find_blocker(self, ray: Ray, distance: Any, active: Any) -> Any:
+        """Some object that the ray meets before `distance`, or NOTHING."""
+        return self._search(ray, distance, active, anything=True)[1]
+
+    @dr.syntax
+    def _search(self, ray: Ray, distance: Any, active: Any, anything: bool) -> tuple[Any, Any, Any]:
+        width = dr.width(ray.d)
+        t_best = dr.zeros(self._types.Float, width) + distance
+        object_best = dr.full(mi.UInt32, NOTHING, width)
+        record_best = dr.zeros(mi.UInt32, width)
+        farthest = mi.Float(t_best) * (1 + SLACK)
+        # The origin as a sum of two single-precision numbers, so that differences to it are wrong by a share of
+        # themselves and no more.
+        origin = mi.Vector3f(ray.o)
+        remainder = mi.Vector3f(ray.o - self._types.Point3(origin))
+        slope = 1 / mi.Vector3f(ray.d)  # dr.rcp is an approximation of fewer digits
+        start = _octant(ray.d) * self._node_count
+        node = mi.UInt32(start)
+        end = start + self._node_count
+        # First the object that the ray travels inside. One that it leaves is convex, and not met again.
+        index = dr.select(ray.inside, ray.object, NOTHING)
+        searching = mi.Bool(active)
+        while searching:
+            tested = searching & (index != NOTHING)
+            if tested:
+                t, record = self._intersect(ray, index, tested)
+                closer = tested & ((t < t_best) | ((t == t_best) & (index < object_best)))
+                t_best = dr.select(closer, t, t_best)
+                object_best = dr.select(closer, index, object_best)
+                record_best = dr.select(closer, record, record_best)
+                farthest = mi.Float(t_best) * (1 + SLACK)
+            if dr.hint(anything, mode="scalar"):
+                searching &= object_best == NOTHING
+            # All rays walk until each is at a leaf, so that they are tested against surfaces together.
+            index = dr.full(mi.UInt32, NOTHING, width)
+            walking = searching & (node < end)
+            while walking:
+                corners = dr.gather(mi.Array4f, self._nodes, 2 * node, walking)
+                rest = dr.gather(mi.Array4f, self._nodes, 2 * node + 1, walking)
+                near = dr.max(((mi.Vector3f(corners.xyz) - origin) - remainder) * slope)
+                far = dr.min(((mi.Vector3f(corners.w, rest.x, rest.y) - origin) - remainder) * slope)
+                # A NaN comes from a ray within a side of a box, which contains nothing: no comparison holds.
+                meets = (near <= dr.minimum(far * (1 + SLACK), farthest)) & (far >= 0)
+                item = dr.reinterpret_array(mi.UInt32, rest.w)
+                index = dr.select(walking & meets & (item != ray.object), item, index)
+                node = dr.select(meets & (item == NOTHING), node + 1, start + dr.reinterpret_array(mi.UInt32, rest.z))
+                walking &= (index == NOTHING) & (node < end)
+            searching &= index != NOTHING
+        return t_best, object_best, record_best
+
+    def _intersect(self, ray: Ray, index: Any, active: Any) -> tuple[Any, Any]:
+        """Distance to one surface (infinite or NaN for none: compare with <) and the record that is met."""
+        own = ray.object == index
+        first = dr.gather(mi.UInt32, self._first, index, active)
+        if not self._any_polyhedron:
+            return self._intersect_sphere(ray, first, own, active), first
+        count = dr.gather(mi.UInt32, self._count, index, active)
+        t, record = self._intersect_planes(ray, first, count, own, active & (count > 0))
+        if self._any_sphere:
+            sphere = count == 0
+            t = dr.select(sphere, self._intersect_sphere(ray, first, own, active & sphere), t)
+            record = dr.select(sphere, first, record)
+        return t, record
+
+    def _intersect_sphere(self, ray: Ray, first: Any, own: Any, active: Any) -> Any:
+        row = self.records.row(first, active)
+        return sphere_distance(self._types.Point3(row.xyz), row.w, ray, own)
+
+    @dr.syntax
+    def _intersect_planes(self, ray: Ray, first: Any, count: Any, own: Any, active: Any) -> tuple[Any, Any]:
+        passage = whole_ray(self._types, dr.width(ray.d))
+        record = mi.UInt32(first)
+        end = first + count
+        while active & (record < end):
+            row = self.records.row(record, active)
+            passage = narrow(passage, ray, self._types.Vector3(row.xyz), row.w, record)
+            record += 1
+        return passage_distance(passage, ray, own)
+
+
+def _octant(d: Any) -> Any:
+    """Which components of a direction are negative, a bit each."""
+    return sum(dr.select(component < 0, mi.UInt32(1 << axis), 0) for axis, component in enumerate(d))
+
+
+def _nodes(surfaces: list[Surface]) -> tuple[Any, Any]:
+    """The nodes of all octants, and the number of an octant's.
+
+    A node is two rows of four: the corner of its box that rays of the octant reach first and the one they reach last,
+    the link, and the object of a leaf, or NOTHING. Unbounded surfaces are leaves before the tree's root, with boxes
+    without bounds.
+    """
+    bounded = [i for i, surface in enumerate(surfaces) if surface.box is not None]
+    unbounded = [i for i, surface in enumerate(surfaces) if surface.box is None]
+    boxes = np.array([surfaces[i].box for i in bounded], dtype=np.float64).reshape(-1, 2, 3)
+    tree = threaded_bvh(boxes[:, 0], boxes[:, 1])
+    first, count = len(unbounded), len(unbounded) + tree.size
+    low = np.full((8, count, 3), -np.inf, dtype=np.float32)
+    high = np.full((8, count, 3), np.inf, dtype=np.float32)
+    corners = tree.boxes.reshape(8, tree.size, 2, 3)
+    with np.errstate(over="ignore"):  # to an infinite side
+        low[:, first:] = np.nextafter(corners[:, :, 0].astype(np.float32), np.float32(-np.inf))
+        high[:, first:] = np.nextafter(corners[:, :, 1].astype(np.float32), np.float32(np.inf))
+    negative = (np.arange(8)[:, None] >> np.arange(3) & 1 == 1)[:, None]
+    nodes = np.empty((8, count, 8), dtype=np.float32)
+    nodes[..., 0:3] = np.where(negative, high, low)
+    nodes[..., 3:6] = np.where(negative, low, high)
+    words = nodes.view(np.uint32)
+    words[:, :first, 6], words[:, :first, 7] = np.arange(1, first + 1), unbounded
+    words[:, first:, 6] = first + tree.skip.reshape(8, tree.size)
+    # NO_ITEM becomes NOTHING.
+    objects = np.array([*bounded, NOTHING], dtype=np.uint32)
+    words[:, first:, 7] = objects[np.minimum(tree.item, len(bounded))].reshape(8, tree.size)
+    return mi.Float(nodes.ravel()), mi.UInt32(count)
