@@ -85,19 +85,19 @@ def speed() -> None:
 
 
 def memory() -> None:
-    """Largest resident set of each renderer at 3840 x 2160."""
+    """Largest resident set of both renderers at 3840 x 2160."""
     print("Figure 1 at 3840 x 2160, one sample a pixel, largest resident set")
-    for renderer in ("native", "mitsuba"):
+    for method in ("native", "mitsuba"):
         with tempfile.TemporaryDirectory() as folder:
             picture = Path(folder, "large.ppm")
-            options = ["--quiet", "--renderer", renderer]
+            options = ["--quiet", "--method", method]
             command = [PROGRAMS / "whitted", "render", FIGURE1, picture, "3840", "2160", *options]
             process = subprocess.Popen(command)
             _, status, usage = os.wait4(process.pid, 0)
             process.returncode = os.waitstatus_to_exitcode(status)
             if process.returncode != 0:
-                raise SystemExit(f"whitted render --renderer {renderer} failed")
-        print(f"{renderer:<10}{usage.ru_maxrss / 1024:>8.0f} MiB")
+                raise SystemExit(f"whitted render --method {method} failed")
+        print(f"{method:<10}{usage.ru_maxrss / 1024:>8.0f} MiB")
 
 
 def _interleaved(subjects: dict[str, Callable[[], float]]) -> dict[str, list[float]]:

@@ -192,28 +192,36 @@ def test_raytrace_into_a_folder(scene, tmp_path, capsys):
 
 def test_render_with_the_native_tracer(whitted, scene, tmp_path):
     out_file = tmp_path / "a.ppm"
-    status, out, err = whitted("render", scene, out_file, 40, 30, "--renderer", "native")
+    status, out, err = whitted("render", scene, out_file, 40, 30, "--method", "native")
     assert (status, out) == (0, "")
     assert err.splitlines()[0].startswith(f"note: {scene}:15: finish 2: ior 1.5")
-    assert err.splitlines()[1].startswith(f"{out_file}: 40 x 30, native-double, ")
+    assert err.splitlines()[1].startswith(f"{out_file}: 40 x 30, native, ")
     assert ppm_pixels(out_file)[:2] == (40, 30)
 
 
 def test_size_may_follow_the_options(whitted, scene, tmp_path):
-    assert whitted("render", "--renderer", "native", scene, tmp_path / "a.ppm", "--pixel", "center", 8, 6)[0] == 0
+    assert whitted("render", "--method", "native", scene, tmp_path / "a.ppm", "--pixel", "center", 8, 6)[0] == 0
     assert ppm_pixels(tmp_path / "a.ppm")[:2] == (8, 6)
 
 
 def test_quiet_says_nothing(whitted, scene, tmp_path):
-    assert whitted("render", scene, tmp_path / "a.ppm", 8, 6, "--renderer", "native", "--quiet") == (0, "", "")
+    assert whitted("render", scene, tmp_path / "a.ppm", 8, 6, "--method", "native", "--quiet") == (0, "", "")
 
 
 def test_stats_go_to_stdout(whitted, scene, tmp_path):
-    _, out, _ = whitted("render", scene, tmp_path / "a.ppm", 8, 6, "--renderer", "native", "--stats")
+    _, out, _ = whitted("render", scene, tmp_path / "a.ppm", 8, 6, "--method", "native", "--stats")
     rows = dict(line.split(maxsplit=1) for line in out.splitlines())
     assert rows["primary"] == "48"
     assert rows["memory"].endswith("MiB")
     assert {"read", "build", "render", "write", "all", "rays"} <= rows.keys()
+
+
+def test_stats_as_json(whitted, scene, tmp_path):
+    _, out, _ = whitted("render", scene, tmp_path / "a.ppm", 8, 6, "--method", "native", "--json", "-", "-q")
+    found = json.loads(out)
+    assert found["method"] == "native"
+    assert list(found["seconds"]) == ["read", "build", "render", "write"]
+    assert found["statistics"]["primary"] == 48
 
 
 @pytest.mark.parametrize(
@@ -242,14 +250,34 @@ def test_options_become_settings(whitted, scene, tmp_path, monkeypatch, options,
         return rendering_of(8, 6)
 
     monkeypatch.setattr(NativeRenderer, "render", render)
-    assert whitted("render", scene, tmp_path / "a.ppm", 8, 6, "--renderer", "native", *options)[0] == 0
+    assert whitted("render", scene, tmp_path / "a.ppm", 8, 6, "--method", "native", *options)[0] == 0
     assert seen == [Settings(width=8, height=6, **settings)]
 
 
-@pytest.mark.parametrize("precision", ["float", "double", "long-double"])
-def test_precision(whitted, scene, tmp_path, precision):
-    _, _, err = whitted("render", scene, tmp_path / "a.ppm", 4, 3, "--renderer", "native", "--precision", precision)
-    assert f"native-{precision}" in err
+@pytest.mark.parametrize(
+    ("method", "precision", "settings"),
+    [
+        ("native", "double", {}),
+        ("native-float", "float", {}),
+        ("native-long-double", "long double", {}),
+        ("native-cutoff-64", "double", {"cutoff": 1 / 64}),
+        ("native-depth-3", "double", {"max_depth": 3}),
+        ("native-1-thread", "double", {"threads": 1}),
+    ],
+)
+def test_a_method_is_a_renderer_with_settings(whitted, scene, tmp_path, monkeypatch, method, precision, settings):
+    from converter.scene.settings import Settings
+
+    seen = []
+
+    def render(self, scene, given, progress=None):
+        seen.append((self.precision, given))
+        return rendering_of(4, 3)
+
+    monkeypatch.setattr(NativeRenderer, "render", render)
+    _, _, err = whitted("render", scene, tmp_path / "a.ppm", 4, 3, "--method", method)
+    assert seen == [(precision, Settings(width=4, height=3, **settings))]
+    assert f", {method}, " in err
 
 
 @pytest.mark.parametrize(
@@ -267,8 +295,12 @@ def test_precision(whitted, scene, tmp_path, precision):
         (["--seed", "-1"], "argument --seed: must lie between 0 and 4294967295, found -1"),
         (["--pixel", "middle"], "argument --pixel: invalid choice: 'middle'"),
         (["--pix", "center"], "unrecognized arguments: --pix"),
-        (["--precision", "float"], "--precision is for --renderer native, and --renderer mitsuba draws"),
-        (["--renderer", "native", "--variant", "auto"], "--variant is for --renderer mitsuba"),
+        (["--method", "nativ"], "argument --method: there is no method 'nativ' (did you mean 'native'?)"),
+        (["--method", "native", "--variant", "auto"], "--variant is for Mitsuba, and native draws"),
+        (["--method", "mitsuba-cuda", "--variant", "auto"], "--variant: the method mitsuba-cuda has its own"),
+        (["--method", "native-cutoff-64", "--cutoff", "0"], "--cutoff: the method native-cutoff-64 has its own"),
+        (["--method", "native-depth-2", "--max-depth", "2"], "--max-depth: the method native-depth-2 has its own"),
+        (["--method", "native-1-thread", "--threads", "1"], "--threads: the method native-1-thread has its own"),
     ],
 )
 def test_render_usage(whitted, scene, tmp_path, options, message):
@@ -290,7 +322,7 @@ def test_the_output_is_checked_before_anything_is_read(whitted, tmp_path):
 def test_a_missing_texture(whitted, tmp_path):
     file = tmp_path / "a.in"
     file.write_text(SCENE.replace("solid 1 .5 .2", "texmap nix.ppm 1 0 0 0 0 1 0 0"))
-    status, _, err = whitted("render", file, tmp_path / "a.ppm", "--renderer", "native")
+    status, _, err = whitted("render", file, tmp_path / "a.ppm", "--method", "native")
     assert status == 2
     assert f"{file}:9:8: " in err
     assert "nix.ppm: no such file" in err
@@ -301,7 +333,7 @@ def test_a_renderer_that_is_not_there(whitted, scene, tmp_path, monkeypatch):
         raise RendererUnavailable("the native tracer is not built; run make")
 
     monkeypatch.setattr(NativeRenderer, "render", render)
-    assert whitted("render", scene, tmp_path / "a.ppm", "--renderer", "native", "-q") == (
+    assert whitted("render", scene, tmp_path / "a.ppm", "--method", "native", "-q") == (
         3,
         "",
         "whitted render: the native tracer is not built; run make\n",
@@ -316,7 +348,7 @@ def test_errors_that_users_can_mend_are_told_without_a_traceback(whitted, scene,
         raise error
 
     monkeypatch.setattr(NativeRenderer, "render", render)
-    found, _, err = whitted("render", scene, tmp_path / "a.ppm", "--renderer", "native", "-q")
+    found, _, err = whitted("render", scene, tmp_path / "a.ppm", "--method", "native", "-q")
     assert found == status
     assert err.startswith("whitted render: ")
     assert len(err.splitlines()) == 1
@@ -329,7 +361,7 @@ def test_bugs_keep_their_traceback(scene, tmp_path, monkeypatch):
 
     monkeypatch.setattr(NativeRenderer, "render", render)
     with pytest.raises(ZeroDivisionError):
-        main.main(["render", str(scene), str(tmp_path / "a.ppm"), "--renderer", "native"])
+        main.main(["render", str(scene), str(tmp_path / "a.ppm"), "--method", "native"])
 
 
 # ---- Ctrl-C
@@ -345,14 +377,14 @@ def interrupted(monkeypatch):
 
 def test_ctrl_c_leaves_no_file(whitted, scene, tmp_path, interrupted):
     (tmp_path / "a.ppm").write_text("older")
-    status, _, err = whitted("render", scene, tmp_path / "a.ppm", 8, 6, "--renderer", "native", "-q")
+    status, _, err = whitted("render", scene, tmp_path / "a.ppm", 8, 6, "--method", "native", "-q")
     assert (status, err) == (130, "whitted render: interrupted\n")
     assert (tmp_path / "a.ppm").read_text() == "older"
     assert len(list(tmp_path.iterdir())) == 2
 
 
 def test_ctrl_c_with_keep_partial_writes_what_is_there(whitted, scene, tmp_path, interrupted):
-    status, _, err = whitted("render", scene, tmp_path / "a.ppm", 8, 6, "--renderer", "native", "--keep-partial")
+    status, _, err = whitted("render", scene, tmp_path / "a.ppm", 8, 6, "--method", "native", "--keep-partial")
     assert status == 130
     assert f"{tmp_path}/a.ppm: only a part of the picture" in err
     assert ppm_pixels(tmp_path / "a.ppm") == (8, 6, b"\xff" * 144)
@@ -363,7 +395,7 @@ def test_ctrl_c_anywhere_else(whitted, scene, tmp_path, monkeypatch):
         raise KeyboardInterrupt
 
     monkeypatch.setattr(NativeRenderer, "render", render)
-    assert whitted("render", scene, tmp_path / "a.ppm", "--renderer", "native")[0] == 130
+    assert whitted("render", scene, tmp_path / "a.ppm", "--method", "native")[0] == 130
 
 
 def test_an_error_that_ctrl_c_turned_into(whitted, scene, tmp_path, monkeypatch):
@@ -375,7 +407,7 @@ def test_an_error_that_ctrl_c_turned_into(whitted, scene, tmp_path, monkeypatch)
             raise RuntimeError("encountered an exception") from error
 
     monkeypatch.setattr(NativeRenderer, "render", render)
-    assert whitted("render", scene, tmp_path / "a.ppm", "--renderer", "native")[0] == 130
+    assert whitted("render", scene, tmp_path / "a.ppm", "--method", "native")[0] == 130
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
@@ -405,7 +437,7 @@ def test_ctrl_c_during_an_import_ends_the_process_at_once(tmp_path):
 
 def test_no_progress_bar_in_a_pipe(whitted, scene, tmp_path, monkeypatch):
     monkeypatch.setattr("converter.commands.progress.PATIENCE", 0.0)
-    assert whitted("render", scene, tmp_path / "a.ppm", 40, 30, "--renderer", "native", "-q") == (0, "", "")
+    assert whitted("render", scene, tmp_path / "a.ppm", 40, 30, "--method", "native", "-q") == (0, "", "")
 
 
 class Terminal(io.StringIO):
@@ -554,13 +586,33 @@ def test_json_into_no_folder(whitted, scene, tmp_path):
 
 
 def test_pixel_of_one_renderer(whitted, scene):
-    status, out, err = whitted("pixel", scene, 20, 14, 40, 30, "--renderer", "native", "-q")
+    status, out, err = whitted("pixel", scene, 20, 14, 40, 30, "--method", "native", "-q")
     assert (status, err) == (0, "")
     lines = out.splitlines()
-    assert lines[0] == f"{scene} at 40 x 30, pixel (20, 14): native-double"
+    assert lines[0] == f"{scene} at 40 x 30, pixel (20, 14): native"
     assert "#0 sphere (17)" in lines[3]
     assert "light 1 adds" in lines[4]
-    assert lines[-1].startswith("colour  native-double  ")
+    assert lines[-1].startswith("colour  native  ")
+
+
+def test_pixel_by_two_methods_of_one_initial(whitted, scene, monkeypatch):
+    right = NativeRenderer.trace_pixel
+
+    def wrong(self, *arguments):
+        tree = right(self, *arguments)
+        tree["rays"][0]["hit"]["t"] += 0.25 if self.precision == "float" else 0.0
+        return tree
+
+    monkeypatch.setattr(NativeRenderer, "trace_pixel", wrong)
+    _, out, _ = whitted("pixel", scene, 20, 14, 40, 30, "--method", "native-float", "-q")
+    assert "pixel (20, 14): native | native-float\n" in out
+    assert [line[:11] for line in out.splitlines() if line.startswith(">")][::2] == [">1 primary ", ">2 primary "]
+
+
+def test_pixel_by_a_method_that_does_not_tell_its_rays(whitted, scene, monkeypatch):
+    monkeypatch.delattr(NativeRenderer, "trace_pixel")
+    status, _, err = whitted("pixel", scene, 20, 14, 40, 30, "--method", "native")
+    assert (status, err.splitlines()[0]) == (2, "whitted pixel: native does not tell its rays")
 
 
 @pytest.mark.parametrize(("x", "y"), [(40, 0), (0, 30)])
@@ -576,7 +628,7 @@ def test_pixel_in_both_renderers(whitted, scene, mi):
     assert "\nno difference\n" in out
     _, out, _ = whitted("pixel", scene, 20, 14, 40, 30, "--json", "-", "-q", *LLVM)
     trees = json.loads(out)
-    assert list(trees) == ["native-double", "mitsuba-llvm_ad_rgb"]
+    assert list(trees) == ["native", "mitsuba"]
     assert all(tree["rays"][0]["hit"]["object"] == 0 for tree in trees.values())
 
 
@@ -611,8 +663,14 @@ def test_compare_both_renderers(whitted, scene, tmp_path, mi):
     found = json.loads(file.read_text())
     assert found["disagreeing_percent"] == 0
     assert found["agrees"] is True
-    assert list(found["seconds"]) == ["native-double", "mitsuba-llvm_ad_rgb"]
+    assert list(found["seconds"]) == ["native", "mitsuba"]
     assert all(len(times["warm"]) == 2 for times in found["seconds"].values())
+
+
+def test_compare_other_methods(whitted, scene):
+    status, out, _ = whitted("compare", scene, 40, 30, "--method", "native-depth-1", "--reference", "native-cutoff-0")
+    assert status == 1
+    assert out.splitlines()[0] == "native-depth-1 against native-cutoff-0, 40 x 30 pixels"
 
 
 @pytest.fixture
@@ -659,6 +717,13 @@ def test_compare_images_of_different_sizes(whitted, images):
         (["small.in", "8", "6", "4"], "found 4 arguments"),
         (["small.in", "8", "x"], "WIDTH and HEIGHT: each must be a whole number, found 'x'"),
         (["small.in", "--limit", "-1"], "argument --limit: must not be negative"),
+        (["small.in", "--method", "native"], "--reference and --method are both native: nothing to compare"),
+        (["small.in", "--reference", "nativ"], "argument --reference: there is no method 'nativ'"),
+        (["small.in", "--reference", "native-cutoff-0", "--cutoff", "1"], "--cutoff: the method native-cutoff-0 has"),
+        (
+            ["small.in", "--method", "native-float", "--variant", "auto"],
+            "for Mitsuba, and native and native-float draw",
+        ),
         (["small.in", "--png", "nowhere/a.png"], "there is no folder"),
         (["small.in", "--json", "nowhere/a.json"], "there is no folder"),
     ],

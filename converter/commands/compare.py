@@ -6,21 +6,12 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from converter.commands.exits import DISAGREE, OK, UsageError
-from converter.commands.options import (
-    Parser,
-    add_reading_options,
-    add_running_options,
-    not_negative,
-    pixels,
-    settings_from,
-    whole,
-)
-from converter.commands.renderers import add_renderer_options, make_renderer
+from converter.commands.method_options import Chosen, add_method_options, check_variant, choose
+from converter.commands.options import Parser, add_reading_options, add_running_options, not_negative, pixels, whole
 
 if TYPE_CHECKING:
     from converter.compare.metrics import Pixels
     from converter.compare.report import Pictures, Report
-    from converter.scene.settings import Settings
 
 
 def parser() -> Parser:
@@ -28,10 +19,11 @@ def parser() -> Parser:
     result = Parser(
         "whitted compare",
         "SCENE [WIDTH HEIGHT] [options]\nIMAGE IMAGE [options]",
-        "Draws a scene with the native tracer and with Mitsuba, or takes two images, and says how much they differ.\n"
+        "Draws a scene by two methods, native and mitsuba, or takes two images, and says how much they differ.\n"
         "A pixel disagrees when a channel differs by more than 1/255, before anything is clamped or rounded.\n"
         "Exit status 0: they agree, 1: they do not.",
-        "whitted compare figure1.in 800 600 --png difference.png\n  whitted compare one.png other.exr",
+        "whitted compare figure1.in 800 600 --png difference.png\n"
+        "  whitted compare figure1.in --method native-float\n  whitted compare one.png other.exr",
     )
     result.add_argument("scene", type=Path, metavar="SCENE|IMAGE", help="the scene, or the picture to be trusted")
     result.add_argument(
@@ -58,7 +50,7 @@ def parser() -> Parser:
     group.add_argument("-q", "--quiet", action="store_true", help="no notes, no progress bar")
     add_reading_options(result)
     add_running_options(result)
-    add_renderer_options(result)
+    add_method_options(result, "what the picture to be trusted is drawn by")
     return result
 
 
@@ -123,8 +115,8 @@ def _read_both(arguments: argparse.Namespace) -> "Pictures":
 
 
 def _draw_both(arguments: argparse.Namespace) -> "Pictures":
-    """The scene by both renderers, in turns where they draw more than once, so that a busy machine slows both."""
-    settings = _settings(arguments)
+    """The scene by both methods, in turns where they draw more than once, so that a busy machine slows both."""
+    methods = _methods(arguments)
 
     import numpy as np
 
@@ -132,25 +124,26 @@ def _draw_both(arguments: argparse.Namespace) -> "Pictures":
     from converter.commands.progress import ProgressBar
     from converter.compare.report import Pictures, Timing
 
-    scene = load_with_notices(arguments.scene, settings, arguments.quiet)
+    scene = load_with_notices(arguments.scene, methods[0].settings, arguments.quiet)
     drawn: dict[str, Pixels] = {}
     timings: dict[str, Timing] = {}
     for turn in range(1 + arguments.repeat):
-        for renderer in (make_renderer("native", arguments), make_renderer("mitsuba", arguments)):
-            with ProgressBar(renderer.name, arguments.quiet) as progress:
+        for name, renderer, settings in methods:
+            with ProgressBar(name, arguments.quiet) as progress:
                 started = time.perf_counter()
                 rendering = renderer.render(scene, settings, progress)
                 spent = time.perf_counter() - started
             if turn == 0:
-                timings[renderer.name] = Timing(spent, stages=rendering.seconds)
-                drawn[renderer.name] = np.asarray(rendering.pixels)
+                timings[name] = Timing(spent, stages=rendering.seconds)
+                drawn[name] = np.asarray(rendering.pixels)
             else:
-                timings[renderer.name].warm.append(spent)
+                timings[name].warm.append(spent)
     reference, test = timings
     return Pictures(reference, test, drawn[reference], drawn[test], timings)
 
 
-def _settings(arguments: argparse.Namespace) -> "Settings":
+def _methods(arguments: argparse.Namespace) -> tuple[Chosen, Chosen]:
+    """The reference and the method."""
     size = arguments.more
     if len(size) not in (0, 2):
         raise UsageError(f"expected a scene and perhaps WIDTH HEIGHT, or two images, found {len(size) + 1} arguments")
@@ -158,7 +151,11 @@ def _settings(arguments: argparse.Namespace) -> "Settings":
         arguments.width, arguments.height = map(pixels, size) if size else (None, None)
     except argparse.ArgumentTypeError as error:
         raise UsageError(f"WIDTH and HEIGHT: each {error}") from None
-    return settings_from(arguments)
+    reference, method = arguments.reference, arguments.method
+    if reference is method:
+        raise UsageError(f"--reference and --method are both {method.name}: nothing to compare")
+    check_variant(arguments, [reference, method])
+    return choose(reference, arguments), choose(method, arguments)
 
 
 def _print(report: "Report") -> None:

@@ -11,7 +11,7 @@ from converter.commands.exits import OK, UNAVAILABLE
 from converter.commands.options import Parser
 from converter.commands.tables import print_table
 
-PACKAGES = ("mitsuba", "drjit", "numpy", "OpenImageIO", "trimesh", "manifold3d", "flip-evaluator", "rich")
+PACKAGES = ("mitsuba", "drjit", "numpy", "OpenImageIO", "trimesh", "manifold3d", "flip-evaluator", "rich", "matplotlib")
 KERNEL_CACHE = Path.home() / ".drjit"
 
 

@@ -6,9 +6,11 @@ from collections.abc import Sequence
 COMMANDS = {
     "render": "draw a scene into an image file",
     "convert": "write a scene as files that Mitsuba 3 loads",
-    "compare": "draw a scene with both renderers, or take two images, and tell the differences",
+    "compare": "draw a scene by two methods, or take two images, and tell the differences",
     "inspect": "say what a scene file holds and what it needs",
-    "pixel": "show the rays behind one pixel, in both renderers",
+    "pixel": "show the rays behind one pixel, by two methods",
+    "methods": "list the methods, and when to use each",
+    "chart": "draw the error of every method against its time",
     "doctor": "say what works on this machine, and what to install where something does not",
 }
 """Every sub-command, a module of this package with `parser() -> Parser` and `run(arguments) -> int`."""

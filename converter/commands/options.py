@@ -119,6 +119,14 @@ def _threads(text: str) -> int:
     return whole(text, 0, MAX_THREADS)
 
 
+def size(text: str) -> tuple[int, int]:
+    """A picture's size, such as 800x600."""
+    width, x, height = text.partition("x")
+    if not x:
+        raise argparse.ArgumentTypeError(f"must be WIDTHxHEIGHT, such as 800x600, found {text!r}")
+    return pixels(width), pixels(height)
+
+
 # ------------------------------------------------------------------------------------------------------------- groups
 
 
@@ -128,8 +136,8 @@ def add_size(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("height", nargs="?", type=pixels, metavar="HEIGHT", help="rows of the picture (600)")
 
 
-def add_reading_options(parser: argparse.ArgumentParser, picture: bool = True) -> None:
-    """Options that say how a scene is read, those too that matter only to a `picture` of it, unless that is false."""
+def add_reading_options(parser: argparse.ArgumentParser, picture: bool = True, bounces: bool = True) -> None:
+    """Options that say how a scene is read, without those that matter only to a `picture` of it or its `bounces`."""
     group = parser.add_argument_group("how the scene is read")
     if picture:
         _add_picture_options(group)
@@ -142,10 +150,14 @@ def add_reading_options(parser: argparse.ArgumentParser, picture: bool = True) -
     group.add_argument(
         "--background", type=_color, metavar="R,G,B", help="colour of rays that hit nothing (the ambient light's)"
     )
+    if bounces:
+        _add_bounce_options(group)
+
+
+def _add_bounce_options(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--cutoff",
         type=not_negative,
-        default=DEFAULTS.cutoff,
         metavar="W",
         help="drop rays that weigh less, the product of their kr and kt (1/512)",
     )
@@ -182,9 +194,7 @@ def _add_picture_options(group: argparse._ArgumentGroup) -> None:
 def add_running_options(parser: argparse.ArgumentParser) -> None:
     """Options that say how the machine is used."""
     group = parser.add_argument_group("how it is drawn")
-    group.add_argument(
-        "--threads", type=_threads, default=DEFAULTS.threads, metavar="N", help="worker threads (one a core)"
-    )
+    group.add_argument("--threads", type=_threads, metavar="N", help="worker threads (one a core)")
     group.add_argument(
         "--seed",
         type=_seed,

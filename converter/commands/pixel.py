@@ -5,8 +5,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from converter.commands.exits import OK, UsageError
+from converter.commands.method_options import add_method_options, check_variant, choose
 from converter.commands.options import Parser, add_reading_options, add_size, position, settings_from
-from converter.commands.renderers import add_renderer_options, check_renderer_options, make_renderer
 
 if TYPE_CHECKING:
     from converter.compare.ray_listing import Line
@@ -19,9 +19,9 @@ def parser() -> Parser:
     result = Parser(
         "whitted pixel",
         "SCENE X Y [WIDTH HEIGHT] [options]",
-        "Lists the rays behind a pixel in both renderers: what each hits, which lights reach it, what follows it.\n"
-        "Where the renderers differ there is a line for each; > marks the first difference, told in full at the end.",
-        "whitted pixel figure1.in 400 300",
+        "Lists the rays behind a pixel by two methods: what each hits, which lights reach it, what follows it.\n"
+        "Where they differ there is a line for each; > marks the first difference, told in full at the end.",
+        "whitted pixel figure1.in 400 300\n  whitted pixel figure1.in 400 300 --method native",
     )
     result.add_argument("scene", type=Path, metavar="SCENE", help="the scene file")
     result.add_argument("x", type=position, metavar="X", help="the pixel's column, 0 is the leftmost")
@@ -31,7 +31,7 @@ def parser() -> Parser:
     group.add_argument("--json", metavar="FILE", help="write the ray trees; - is the standard output, without the list")
     group.add_argument("-q", "--quiet", action="store_true", help="no notes")
     add_reading_options(result)
-    add_renderer_options(result, "trace with this one only (both)")
+    add_method_options(result, "what the rays to be trusted are traced by; the same as --method: only this one")
     return result
 
 
@@ -41,9 +41,12 @@ def run(arguments: argparse.Namespace) -> int:
     x, y = arguments.x, arguments.y
     if x >= settings.width or y >= settings.height:
         raise UsageError(f"pixel ({x}, {y}) lies outside the picture of {settings.width} x {settings.height} pixels")
-    names = [arguments.renderer] if arguments.renderer else ["native", "mitsuba"]
-    if arguments.renderer:
-        check_renderer_options(arguments, arguments.renderer)
+    methods = list(dict.fromkeys((arguments.reference, arguments.method)))
+    check_variant(arguments, methods)
+    chosen = [choose(method, arguments) for method in methods]
+    for name, renderer, _ in chosen:
+        if not hasattr(renderer, "trace_pixel"):
+            raise UsageError(f"{name} does not tell its rays")
 
     from converter.commands.json_out import check_json, write_json
     from converter.commands.notes import load_with_notices
@@ -51,9 +54,8 @@ def run(arguments: argparse.Namespace) -> int:
     check_json(arguments.json)
     scene = load_with_notices(arguments.scene, settings, arguments.quiet)
     traced: dict[str, dict[str, Any]] = {}
-    for name in names:
-        renderer = make_renderer(name, arguments)
-        traced[renderer.name] = renderer.trace_pixel(scene, settings, x, y)
+    for name, renderer, changed in chosen:
+        traced[name] = renderer.trace_pixel(scene, changed, x, y)
     if arguments.json != "-":
         print(f"{arguments.scene} at {settings.width} x {settings.height}, pixel ({x}, {y}): {' | '.join(traced)}\n")
         _list(scene, traced)
@@ -68,7 +70,8 @@ def _list(scene: "Scene", traced: dict[str, dict[str, Any]]) -> None:
     names, trees = list(traced), [tree["rays"] for tree in traced.values()]
     pairs = pair_trees(trees[0], trees[-1])
     first = first_unequal(pairs)
-    for line in list_rays(pairs, scene, (names[0][0], names[-1][0]), first):
+    letters = (names[0][0], names[-1][0])
+    for line in list_rays(pairs, scene, letters if letters[0] != letters[1] else ("1", "2"), first):
         _print_line(line)
     print()
     width = max(map(len, names))

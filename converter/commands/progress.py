@@ -21,6 +21,13 @@ class ProgressBar:
         self._wanted = not quiet and sys.stderr is not None and sys.stderr.isatty()
         self._bar: Progress | None = None
 
+    def tell(self, what: str, share: float) -> None:
+        """Show that `share` of everything is finished, and what is at hand."""
+        self._what = what
+        self(share)
+        if self._bar is not None:
+            self._bar.update(self._bar.task_ids[0], description=_plain(what))
+
     def __call__(self, share: float) -> None:
         """Show that `share` of the picture is finished."""
         if self._bar is None and self._wanted and share < 1 and time.monotonic() - self._started >= PATIENCE:
@@ -44,6 +51,11 @@ class ProgressBar:
 
         columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
         bar = Progress(*columns, console=Console(stderr=True), transient=True)
-        bar.add_task(self._what.replace("[", r"\["), total=1.0)
+        bar.add_task(_plain(self._what), total=1.0)
         bar.start()
         return bar
+
+
+def _plain(text: str) -> str:
+    """Text in which brackets are no markup."""
+    return text.replace("[", r"\[")

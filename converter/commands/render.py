@@ -5,8 +5,8 @@ import sys
 from pathlib import Path
 
 from converter.commands.exits import OK
-from converter.commands.options import Parser, add_reading_options, add_running_options, add_size, settings_from
-from converter.commands.renderers import add_renderer_options, check_renderer_options, make_renderer
+from converter.commands.method_options import add_method_options, check_variant, choose
+from converter.commands.options import Parser, add_reading_options, add_running_options, add_size
 
 
 def parser() -> Parser:
@@ -22,28 +22,29 @@ def parser() -> Parser:
     add_size(result)
     add_reading_options(result)
     add_running_options(result)
-    add_renderer_options(result, "what draws (mitsuba)")
+    add_method_options(result)
     group = result.add_argument_group("what is told and kept")
     group.add_argument("-q", "--quiet", action="store_true", help="no notes, no progress bar, no closing line")
     group.add_argument("--stats", action="store_true", help="print seconds by stage, rays and memory")
+    group.add_argument("--json", metavar="FILE", help="write what --stats prints; - is the standard output")
     group.add_argument("--keep-partial", action="store_true", help="on Ctrl-C write what is finished")
     return result
 
 
 def run(arguments: argparse.Namespace) -> int:
     """Draw the scene."""
-    settings = settings_from(arguments)
-    name = arguments.renderer or "mitsuba"
-    check_renderer_options(arguments, name)
+    check_variant(arguments, [arguments.method])
+    method = choose(arguments.method, arguments)
 
     from converter.commands.drawing import draw
+    from converter.commands.json_out import check_json, write_json
     from converter.commands.notes import say
 
-    renderer = make_renderer(name, arguments)
-    quiet = arguments.quiet
-    rendering, stages = draw(renderer, arguments.scene, arguments.out, settings, quiet, arguments.keep_partial)
+    check_json(arguments.json)
+    quiet, settings = arguments.quiet, method.settings
+    rendering, stages = draw(method.renderer, arguments.scene, arguments.out, settings, quiet, arguments.keep_partial)
     seconds = sum(stages.values())
-    say(f"{arguments.out}: {settings.width} x {settings.height}, {renderer.name}, {seconds:.2f} s", quiet)
+    say(f"{arguments.out}: {settings.width} x {settings.height}, {method.name}, {seconds:.2f} s", quiet)
     if arguments.stats:
         from converter.commands.tables import print_table
 
@@ -52,6 +53,8 @@ def run(arguments: argparse.Namespace) -> int:
         rows += [(name.replace("_", " "), str(value)) for name, value in rendering.statistics.items()]
         rows += [("memory peak", f"{_memory_peak():.0f} MiB")]
         print_table(rows, align="lr")
+    statistics = {**rendering.statistics, "memory_peak_mib": _memory_peak()}
+    write_json(arguments.json, {"method": method.name, "seconds": stages, "statistics": statistics})
     return OK
 
 

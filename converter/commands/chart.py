@@ -1,0 +1,162 @@
+"""`whitted chart`: the error of every method against its time, as a picture, a table, CSV and JSON."""
+
+import argparse
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+from converter.commands.exits import OK, UsageError
+from converter.commands.method_options import add_variant, check_variant, method_named
+from converter.commands.options import Parser, add_reading_options, settings_from, size, whole
+
+if TYPE_CHECKING:
+    from converter.renderers.methods import Method
+    from converter.scene.model import Scene
+    from converter.scene.settings import Settings
+    from converter.studies.measure import SceneStudy
+
+
+def parser() -> Parser:
+    """The command's arguments."""
+    result = Parser(
+        "whitted chart",
+        "SCENE... -o FILE [options]",
+        "Draws each scene by every method, several times in turns, and draws error against time: a mark a method, the\n"
+        "front of those that nothing beats, and whole processes below. Errors are against the native tracer in long\n"
+        "double, with no cut-off and 64 bounces, or as near to that as can be afforded.",
+        "whitted chart scenes/figure1.in -o chart.svg --csv chart.csv",
+    )
+    result.add_argument("scenes", type=Path, nargs="+", metavar="SCENE", help="scene files, a column of the chart each")
+    result.add_argument("-o", "--out", type=Path, required=True, metavar="FILE", help="the chart, .svg or .png")
+    result.add_argument("--size", type=size, default="800x600", metavar="WxH", help="of the pictures (%(default)s)")
+    group = result.add_argument_group("what is measured; `whitted methods` lists the methods")
+    group.add_argument(
+        "--methods",
+        type=_methods,
+        metavar="NAME,...|all",
+        help="the methods (all, but of the depths only 1, 2, 4, 8 and 16)",
+    )
+    group.add_argument("--vs", choices=("povray",), help="with POV-Ray as well, which has to be installed")
+    group.add_argument(
+        "--runs",
+        type=_runs,
+        default=7,
+        metavar="N",
+        help="how often each method draws warm; slow ones less (%(default)s)",
+    )
+    add_variant(group, "llvm_ad_rgb, except for mitsuba-cuda")
+    group = result.add_argument_group("what is told")
+    group.add_argument("--csv", type=Path, metavar="FILE", help="write a line for every method on every scene")
+    group.add_argument(
+        "--json", metavar="FILE", help="write every run too; - is the standard output, without the table"
+    )
+    group.add_argument("-q", "--quiet", action="store_true", help="no notes, no progress bar")
+    add_reading_options(result, bounces=False)
+    return result
+
+
+def _runs(text: str) -> int:
+    return whole(text, 2, 1000)
+
+
+def _methods(text: str) -> "list[Method]":
+    """The methods of these names, each once."""
+    if text == "all":
+        from converter.renderers.methods import METHODS
+
+        return [method for method in METHODS.values() if method.family != "povray"]
+    return list(dict.fromkeys(method_named(name.strip()) for name in text.split(",")))
+
+
+def run(arguments: argparse.Namespace) -> int:
+    """Measure, draw, and tell."""
+    from converter.commands.json_out import check_json, write_json
+    from converter.studies.chart_figure import ENDINGS
+    from converter.studies.files import check_target, replacing
+
+    out: Path = arguments.out
+    if out.suffix.lower() not in ENDINGS:
+        raise UsageError(f"argument -o/--out: must end in {' or '.join(ENDINGS)}, found {str(out)!r}")
+    methods = _chosen(arguments)
+    check_variant(arguments, methods) if arguments.variant else None
+    arguments.width, arguments.height = arguments.size
+    settings = settings_from(arguments)
+    for file in (out, arguments.csv):
+        if file is not None:
+            check_target(file)
+    check_json(arguments.json)
+    scenes = _read(arguments, settings)
+    studies = _measure(arguments, scenes, settings, methods)
+
+    from converter.studies.chart_figure import draw_chart
+    from converter.studies.chart_report import to_csv, to_json
+
+    with replacing(out) as temporary:
+        draw_chart(studies, temporary)
+    if arguments.csv is not None:
+        with replacing(arguments.csv) as temporary:
+            temporary.write_text(to_csv(studies), encoding="utf-8")
+    if arguments.json != "-":
+        for study in studies:
+            _print(study)
+    write_json(arguments.json, to_json(studies))
+    return OK
+
+
+def _chosen(arguments: argparse.Namespace) -> "list[Method]":
+    from converter.renderers.methods import METHODS
+
+    methods = arguments.methods or [method for method in METHODS.values() if method.usual]
+    if arguments.vs is not None:
+        versus = METHODS[arguments.vs]
+        if reason := versus.missing():
+            from converter.renderers.base import RendererUnavailable
+
+            raise RendererUnavailable(f"--vs {versus.name}: {reason}")
+        methods = list(dict.fromkeys((*methods, versus)))
+    return list(methods)
+
+
+def _read(arguments: argparse.Namespace, settings: "Settings") -> "list[tuple[Path, Scene]]":
+    """All scenes, before the first is drawn, so that no one waits for a mistake in the last."""
+    from converter.commands.notes import load_with_notices
+
+    return [(file, load_with_notices(file, settings, arguments.quiet)) for file in arguments.scenes]
+
+
+def _measure(
+    arguments: argparse.Namespace,
+    scenes: "list[tuple[Path, Scene]]",
+    settings: "Settings",
+    methods: "list[Method]",
+) -> "list[SceneStudy]":
+    from converter.commands.notes import say
+    from converter.commands.progress import ProgressBar
+    from converter.studies.measure import measure_scene
+
+    variant = arguments.variant or "llvm_ad_rgb"
+    studies: list[SceneStudy] = []
+    with ProgressBar("chart", arguments.quiet) as progress:
+
+        def tell(what: str, share: float) -> None:
+            progress.tell(what, (len(studies) + share) / len(scenes))
+
+        for file, scene in scenes:
+            studies.append(measure_scene(file, scene, settings, methods, arguments.runs, variant, tell))
+    for study in studies:
+        for m in study.measured:
+            if m.skipped is not None:
+                say(f"note: {study.file}: {m.method.name} is left out: {m.skipped}", arguments.quiet)
+        if not study.drawn:
+            raise UsageError(f"none of the methods draws {study.file}")
+    return studies
+
+
+def _print(study: "SceneStudy") -> None:
+    from converter.commands.tables import print_table
+    from converter.studies.chart_report import ALIGN, HEADER, LEGEND, about_reference, rows
+
+    floor = study.reference.floor
+    title = f"{study.file}, {study.settings.width} x {study.settings.height} pixels, seconds"
+    print_table(rows(study), HEADER, ALIGN, title)
+    print(f"\nagainst {about_reference(study)}")
+    print(f"floor, double against long double: {floor.disagreeing} pixels, RMS {floor.rms:.1e}\n{LEGEND}\n")

@@ -1,0 +1,78 @@
+"""Which method draws, as the arguments say."""
+
+import argparse
+from typing import TYPE_CHECKING, NamedTuple
+
+from converter.commands.exits import UsageError
+from converter.commands.options import settings_from
+
+if TYPE_CHECKING:
+    from converter.renderers.base import Renderer
+    from converter.renderers.methods import Method
+    from converter.scene.settings import Settings
+
+
+class Chosen(NamedTuple):
+    """A method, made: its renderer, and the settings that it draws with."""
+
+    name: str
+    renderer: "Renderer"
+    settings: "Settings"
+
+
+def method_named(text: str) -> "Method":
+    """The method of that name, as an argument's type."""
+    from converter.renderers.methods import find_method
+
+    try:
+        return find_method(text)
+    except ValueError as error:
+        raise argparse.ArgumentTypeError(str(error)) from None
+
+
+def add_method_options(parser: argparse.ArgumentParser, reference: str | None = None) -> None:
+    """`--method`, `--variant`, and `--reference` with its help where there is a picture to compare with."""
+    group = parser.add_argument_group("the method; `whitted methods` lists them")
+    group.add_argument(
+        "--method", type=method_named, default="mitsuba", metavar="NAME", help="what draws (%(default)s)"
+    )
+    if reference is not None:
+        group.add_argument(
+            "--reference", type=method_named, default="native", metavar="NAME", help=f"{reference} (%(default)s)"
+        )
+    add_variant(group)
+
+
+def add_variant(group: argparse._ArgumentGroup, default: str = "auto: a GPU if any") -> None:
+    """`--variant`."""
+    group.add_argument(
+        "--variant", choices=("auto", "llvm_ad_rgb", "cuda_ad_rgb"), help=f"what Mitsuba runs on ({default})"
+    )
+
+
+def check_variant(arguments: argparse.Namespace, methods: "list[Method]") -> None:
+    """Refuse a `--variant` that none of the methods obeys.
+
+    Raises:
+        UsageError: it is given, and none does.
+
+    """
+    if arguments.variant is None or any(m.family == "mitsuba" and "variant" not in m.options for m in methods):
+        return
+    if any(m.family == "mitsuba" for m in methods):
+        raise UsageError(f"--variant: the method {methods[0].name} has its own")
+    draw = "draws" if len(methods) == 1 else "draw"
+    raise UsageError(f"--variant is for Mitsuba, and {' and '.join(m.name for m in methods)} {draw}")
+
+
+def choose(method: "Method", arguments: argparse.Namespace) -> Chosen:
+    """The method with the settings that the arguments ask for.
+
+    Raises:
+        UsageError: an argument asks for a setting that is part of the method.
+
+    """
+    for setting in method.changes:
+        if getattr(arguments, setting, None) is not None:
+            raise UsageError(f"--{setting.replace('_', '-')}: the method {method.name} has its own")
+    return Chosen(method.name, method.renderer(arguments.variant), method.settings(settings_from(arguments)))

@@ -1,0 +1,234 @@
+"""The methods: every renderer with every setting that is worth comparing, under a name.
+
+Importing this loads no renderer.
+"""
+
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import dataclass, field, replace
+from typing import Any, Literal
+
+from converter.renderers.base import Renderer
+from converter.scene.settings import Settings
+
+Family = Literal["native", "mitsuba", "povray"]
+
+DEEPEST = 16
+"""`native-depth-1` to this one are methods ..."""
+USUAL_DEPTHS = (1, 2, 4, 8, 16)
+"""... and these are usual."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Method:
+    """A renderer, how it is made, and the settings that are part of the method; each is there once, in the table.
+
+    Attributes:
+        name: what users call it.
+        family: which renderer it is.
+        group: what it is listed under.
+        use: when to use it, in a line.
+        options: what the renderer is made with.
+        changes: settings that it has instead of the user's.
+        usual: whether studies run it where nobody says which methods to run.
+
+    """
+
+    name: str
+    family: Family
+    group: str
+    use: str
+    options: Mapping[str, Any] = field(default_factory=dict)
+    changes: Mapping[str, Any] = field(default_factory=dict)
+    usual: bool = True
+
+    def renderer(self, variant: str | None = None) -> Renderer:
+        """The renderer; Mitsuba in `variant`, unless that is None or part of the method."""
+        options = dict(self.options)
+        if self.family == "mitsuba" and variant is not None:
+            options.setdefault("variant", variant)
+        return _MAKERS[self.family](**options)
+
+    def settings(self, given: Settings) -> Settings:
+        """`given` with what the method changes."""
+        return replace(given, **self.changes)
+
+    def missing(self) -> str | None:
+        """Why the method cannot run on this machine, as far as can be told without running it; None if it can."""
+        return _not_yet(self) or _MISSING[self.family](self)
+
+
+def find_method(name: str) -> Method:
+    """The method of that name.
+
+    Raises:
+        ValueError: there is none; the message names one like it.
+
+    """
+    if name not in METHODS:
+        from converter.scene.errors import did_you_mean
+
+        raise ValueError(f"there is no method {name!r}{did_you_mean(name, tuple(METHODS))}")
+    return METHODS[name]
+
+
+# ------------------------------------------------------------------------------------------------------ the renderers
+
+
+def _native(**options: Any) -> Renderer:
+    from converter.renderers.native import NativeRenderer
+
+    return NativeRenderer(**options)
+
+
+def _mitsuba(**options: Any) -> Renderer:
+    from converter.renderers.mitsuba import MitsubaRenderer
+
+    return MitsubaRenderer(**options)
+
+
+def _povray(**options: Any) -> Renderer:
+    from importlib import import_module
+
+    renderer: Renderer = import_module("converter.renderers.povray").PovrayRenderer(**options)
+    return renderer
+
+
+def _native_missing(method: Method) -> str | None:
+    from converter.renderers.base import RendererUnavailable
+    from converter.renderers.native import native_module
+
+    try:
+        native_module()
+    except RendererUnavailable as error:
+        return str(error)
+    return None
+
+
+def _mitsuba_missing(method: Method) -> str | None:
+    from importlib.util import find_spec
+
+    if find_spec("mitsuba") is None:
+        return "Mitsuba is not installed: pip install mitsuba"
+    from mitsuba_plugins.backend import MINIMUM_LLVM, find_llvm, has_cuda
+
+    if method.options.get("variant") == "cuda_ad_rgb":
+        return None if has_cuda() else "no CUDA device answers on this machine"
+    if find_llvm() is None and not has_cuda():
+        return f"neither a CUDA device nor an LLVM library of version {MINIMUM_LLVM} or newer is there"
+    return None
+
+
+def _povray_missing(method: Method) -> str | None:
+    from shutil import which
+
+    return None if which("povray") else "POV-Ray is not installed (Debian, Ubuntu: apt install povray)"
+
+
+_MAKERS: Mapping[Family, Callable[..., Renderer]] = {"native": _native, "mitsuba": _mitsuba, "povray": _povray}
+_MISSING: Mapping[Family, Callable[[Method], str | None]] = {
+    "native": _native_missing,
+    "mitsuba": _mitsuba_missing,
+    "povray": _povray_missing,
+}
+
+
+# TEMPORARY, until the renderers have every option that the table names: delete this, and its call in `missing`.
+def _not_yet(method: Method) -> str | None:
+    """Whether a renderer lacks an option that the table gives it."""
+    import dataclasses
+    from importlib.util import find_spec
+    from typing import get_args, get_type_hints
+
+    if find_spec(f"converter.renderers.{method.family}") is None:
+        return "not in this version"
+    if method.family == "povray":
+        return None
+    from converter.renderers.mitsuba import MitsubaRenderer
+    from converter.renderers.native import NativeRenderer
+
+    renderer = NativeRenderer if method.family == "native" else MitsubaRenderer
+    known = {f.name for f in dataclasses.fields(renderer)}
+    hints = get_type_hints(renderer)
+    for option, value in method.options.items():
+        values = get_args(hints.get(option))
+        if option not in known or (values and isinstance(value, str) and value not in values):
+            return "not in this version"
+    return None
+
+
+# ---------------------------------------------------------------------------------------------------------- the table
+
+
+def _native_methods() -> Iterator[Method]:
+    def method(name: str, use: str, changes: Mapping[str, Any] | None = None, **options: str) -> Method:
+        return Method(name, "native", "the native tracer", use, options, changes or {})
+
+    yield method("native", "exact in double precision and fast: what the others are held against")
+    yield method(
+        "native-float", "single precision: faster, where a wrong pixel at an edge does no harm", precision="float"
+    )
+    yield method("native-long-double", "to check native itself, tens of times slower", precision="long double")
+    yield method("native-brute", "tries every object for every ray: to check the hierarchy", search="brute")
+    yield method("native-bvh", "a hierarchy over the objects, however few they are", search="bvh")
+    yield method("native-1-thread", "leaves the other cores alone", {"threads": 1})
+
+
+def _following_methods() -> Iterator[Method]:
+    def method(name: str, use: str, usual: bool = True, **changes: Any) -> Method:
+        return Method(name, "native", "the native tracer, following more rays or fewer", use, {}, changes, usual)
+
+    yield method("native-cutoff-0", "drops no ray for its weight: for figures, not for pictures", cutoff=0.0)
+    yield method("native-cutoff-4096", "drops rays below 1/4096: where dark parts will be brightened", cutoff=1 / 4096)
+    yield method("native-cutoff-512", "drops rays below 1/512, hardly seen in 8 bits: the default", cutoff=1 / 512)
+    yield method("native-cutoff-64", "drops rays below 1/64: a preview", cutoff=1 / 64)
+    for bounces in range(1, DEEPEST + 1):
+        use = f"follows a ray for {bounces} bounce{'s' if bounces > 1 else ''} at most"
+        yield method(f"native-depth-{bounces}", use, bounces in USUAL_DEPTHS, max_depth=bounces)
+
+
+def _mitsuba_methods() -> Iterator[Method]:
+    def method(name: str, use: str, changes: Mapping[str, Any] | None = None, **options: str) -> Method:
+        return Method(name, "mitsuba", "Mitsuba", use, options, changes or {})
+
+    yield method("mitsuba", "finds hits in the way that suits the scene, in double precision, on a GPU if there is one")
+    yield method("mitsuba-analytic", "surfaces in the kernel, in double: small scenes", intersections="analytic")
+    yield method("mitsuba-analytic-float", "the same in single precision", intersections="analytic", precision="float")
+    yield method("mitsuba-bvh", "surfaces and a hierarchy in the kernel, in double: large scenes", intersections="bvh")
+    yield method(
+        "mitsuba-mesh", "Embree says which surface, the exact surface says where, in double", intersections="mesh"
+    )
+    yield method(
+        "mitsuba-ulp",
+        "Embree's hits, next rays moved off by units in the last place (Waechter and Binder)",
+        intersections="ulp",
+    )
+    yield method(
+        "mitsuba-offset", "Embree's hits and Mitsuba's own ray offset: what Mitsuba alone does", intersections="offset"
+    )
+    yield method("mitsuba-1-thread", "leaves the other cores alone", {"threads": 1})
+    yield method("mitsuba-cuda", "on the GPU: large pictures", variant="cuda_ad_rgb")
+
+
+def _tessellated_methods() -> Iterator[Method]:
+    for share in ("0.1", "0.01", "0.001"):
+        yield Method(
+            f"mitsuba-spheres-{share}",
+            "mitsuba",
+            "Mitsuba, spheres as meshes",
+            f"at most {share} radii off the sphere: to see what tessellation costs",
+            {"sphere_tolerance": float(share)},
+        )
+
+
+def _povray_methods() -> Iterator[Method]:
+    yield Method(
+        "povray", "povray", "POV-Ray", "a third opinion, where it is installed; whitted chart --vs povray", usual=False
+    )
+
+
+METHODS: Mapping[str, Method] = {
+    method.name: method
+    for methods in (_native_methods, _following_methods, _mitsuba_methods, _tessellated_methods, _povray_methods)
+    for method in methods()
+}
+"""Every method by its name, the groups together."""
