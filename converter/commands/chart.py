@@ -77,7 +77,7 @@ def run(arguments: argparse.Namespace) -> int:
     if out.suffix.lower() not in ENDINGS:
         raise UsageError(f"argument -o/--out: must end in {' or '.join(ENDINGS)}, found {str(out)!r}")
     methods = _chosen(arguments)
-    check_variant(arguments, methods) if arguments.variant else None
+    check_variant(arguments, methods)
     arguments.width, arguments.height = arguments.size
     settings = settings_from(arguments)
     for file in (out, arguments.csv):
@@ -129,8 +129,8 @@ def _measure(
     settings: "Settings",
     methods: "list[Method]",
 ) -> "list[SceneStudy]":
-    from converter.commands.notes import say
     from converter.commands.progress import ProgressBar
+    from converter.studies.chart_report import left_out_methods
     from converter.studies.measure import measure_scene
 
     variant = arguments.variant or "llvm_ad_rgb"
@@ -143,20 +143,20 @@ def _measure(
         for file, scene in scenes:
             studies.append(measure_scene(file, scene, settings, methods, arguments.runs, variant, tell))
     for study in studies:
-        for m in study.measured:
-            if m.skipped is not None:
-                say(f"note: {study.file}: {m.method.name} is left out: {m.skipped}", arguments.quiet)
         if not study.drawn:
-            raise UsageError(f"none of the methods draws {study.file}")
+            raise UsageError(f"no method draws {study.file}; {'; '.join(left_out_methods(study))}")
     return studies
 
 
 def _print(study: "SceneStudy") -> None:
     from converter.commands.tables import print_table
-    from converter.studies.chart_report import ALIGN, HEADER, LEGEND, about_reference, rows
+    from converter.studies.chart_report import ALIGN, HEADER, LEGEND, about_reference, figure, left_out_methods, rows
 
     floor = study.reference.floor
     title = f"{study.file}, {study.settings.width} x {study.settings.height} pixels, seconds"
     print_table(rows(study), HEADER, ALIGN, title)
     print(f"\nagainst {about_reference(study)}")
-    print(f"floor, double against long double: {floor.disagreeing} pixels, RMS {floor.rms:.1e}\n{LEGEND}\n")
+    print(f"floor, double against long double: {floor.disagreeing} pixels, RMS {figure(floor.rms)}\n{LEGEND}")
+    for line in left_out_methods(study):
+        print(line)
+    print()

@@ -44,8 +44,9 @@ def run(arguments: argparse.Namespace) -> int:
     methods = list(dict.fromkeys((arguments.reference, arguments.method)))
     check_variant(arguments, methods)
     chosen = [choose(method, arguments) for method in methods]
-    for name, renderer, _ in chosen:
-        if not hasattr(renderer, "trace_pixel"):
+    tracers: dict[str, Any] = {c.name: getattr(c.renderer, "trace_pixel", None) for c in chosen}
+    for name, tracer in tracers.items():
+        if tracer is None:
             raise UsageError(f"{name} does not tell its rays")
 
     from converter.commands.json_out import check_json, write_json
@@ -54,8 +55,8 @@ def run(arguments: argparse.Namespace) -> int:
     check_json(arguments.json)
     scene = load_with_notices(arguments.scene, settings, arguments.quiet)
     traced: dict[str, dict[str, Any]] = {}
-    for name, renderer, changed in chosen:
-        traced[name] = renderer.trace_pixel(scene, changed, x, y)
+    for name, _, changed in chosen:
+        traced[name] = tracers[name](scene, changed, x, y)
     if arguments.json != "-":
         print(f"{arguments.scene} at {settings.width} x {settings.height}, pixel ({x}, {y}): {' | '.join(traced)}\n")
         _list(scene, traced)

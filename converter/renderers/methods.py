@@ -8,10 +8,13 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from converter.renderers.base import Renderer
+from converter.scene.model import Polyhedron, Scene
 from converter.scene.settings import Settings
 
 Family = Literal["native", "mitsuba", "povray"]
 
+MOST_COMPILED = 128
+"""Surfaces up to which a method that compiles each by itself is tried."""
 DEEPEST = 16
 """`native-depth-1` to this one are methods ..."""
 USUAL_DEPTHS = (1, 2, 4, 8, 16)
@@ -29,6 +32,7 @@ class Method:
         use: when to use it, in a line.
         options: what the renderer is made with.
         changes: settings that it has instead of the user's.
+        most_surfaces: spheres and planes, together, that it bears; None for any number.
         usual: whether studies run it where nobody says which methods to run.
 
     """
@@ -39,6 +43,7 @@ class Method:
     use: str
     options: Mapping[str, Any] = field(default_factory=dict)
     changes: Mapping[str, Any] = field(default_factory=dict)
+    most_surfaces: int | None = None
     usual: bool = True
 
     def renderer(self, variant: str | None = None) -> Renderer:
@@ -55,6 +60,15 @@ class Method:
     def missing(self) -> str | None:
         """Why the method cannot run on this machine, as far as can be told without running it; None if it can."""
         return _not_yet(self) or _MISSING[self.family](self)
+
+    def unfit(self, scene: Scene) -> str | None:
+        """Why the method is not for `scene`; None if it is."""
+        if self.most_surfaces is None:
+            return None
+        count = sum(len(o.shape.planes) if isinstance(o.shape, Polyhedron) else 1 for o in scene.objects)
+        if count <= self.most_surfaces:
+            return None
+        return f"{count} spheres and planes would take too long to compile"
 
 
 def find_method(name: str) -> Method:
@@ -175,7 +189,7 @@ def _native_methods() -> Iterator[Method]:
 
 def _following_methods() -> Iterator[Method]:
     def method(name: str, use: str, usual: bool = True, **changes: Any) -> Method:
-        return Method(name, "native", "the native tracer, following more rays or fewer", use, {}, changes, usual)
+        return Method(name, "native", "the native tracer, following more rays or fewer", use, {}, changes, usual=usual)
 
     yield method("native-cutoff-0", "drops no ray for its weight: for figures, not for pictures", cutoff=0.0)
     yield method("native-cutoff-4096", "drops rays below 1/4096: where dark parts will be brightened", cutoff=1 / 4096)
@@ -188,7 +202,8 @@ def _following_methods() -> Iterator[Method]:
 
 def _mitsuba_methods() -> Iterator[Method]:
     def method(name: str, use: str, changes: Mapping[str, Any] | None = None, **options: str) -> Method:
-        return Method(name, "mitsuba", "Mitsuba", use, options, changes or {})
+        most = MOST_COMPILED if options.get("intersections") == "analytic" else None
+        return Method(name, "mitsuba", "Mitsuba", use, options, changes or {}, most)
 
     yield method("mitsuba", "finds hits in the way that suits the scene, in double precision, on a GPU if there is one")
     yield method("mitsuba-analytic", "surfaces in the kernel, in double: small scenes", intersections="analytic")

@@ -35,15 +35,19 @@ STYLES: dict[Family, dict[str, Any]] = {
 """Each renderer has a shape and a fill of its own, and no colour."""
 
 
+_GROUND = {"boxstyle": "square,pad=0.05", "facecolor": "white", "alpha": 0.75, "linewidth": 0}
+"""Behind a name, so that lines under it do not strike it out."""
+
+
 @dataclass(frozen=True, slots=True)
 class Mark:
-    """A method in a panel: warm seconds (median, least, most) and its error."""
+    """A method in a panel: warm seconds (their quartiles, the median in the middle) and its error."""
 
     name: str
     family: Family
+    lower: float
     seconds: float
-    least: float
-    most: float
+    upper: float
     error: float
 
 
@@ -127,7 +131,7 @@ def _title(study: SceneStudy) -> str:
     settings = study.settings
     runs = max((len(m.runs) for m in study.drawn), default=0)
     size = f"{settings.width} x {settings.height} pixels"
-    return f"{study.file.name}, {size}; marks: median of up to {runs} runs, bars: least to most"
+    return f"{study.file.name}, {size}; medians of up to {runs} runs, bars: quartiles"
 
 
 def percent(share: float) -> str:
@@ -168,7 +172,7 @@ class _ErrorPanel:
         cls, axes: "Axes", study: SceneStudy, errors: list[float], floor: float, tick: Callable[[float], str]
     ) -> "_ErrorPanel":
         marks = [
-            Mark(m.method.name, m.method.family, m.warm, min(m.seconds), max(m.seconds), error)
+            Mark(m.method.name, m.method.family, *_quartiles(m.seconds), error)
             for m, error in zip(study.drawn, errors, strict=True)
         ]
         return cls(axes, marks, floor, error_scale(errors, floor), tick)
@@ -176,7 +180,7 @@ class _ErrorPanel:
     def draw(self) -> None:
         """Everything but the names."""
         axes, scale = self.axes, self.scale
-        _scale_seconds(axes, [seconds for m in self.marks for seconds in (m.least, m.most)])
+        _scale_seconds(axes, [seconds for m in self.marks for seconds in (m.lower, m.upper)])
         axes.set_xlabel("seconds to render, warm", fontsize=8)
         axes.set_yscale("log")
         axes.set_ylim(scale.bottom, scale.high)
@@ -192,8 +196,8 @@ class _ErrorPanel:
         self._draw_front()
         for mark in self.marks:
             y = scale.place(mark.error)
-            axes.plot([mark.least, mark.most], [y, y], "-", color="black", lw=0.6, zorder=3)
-            axes.plot(mark.seconds, y, ms=MARK, mec="black", mew=0.7, zorder=4, ls="", **STYLES[mark.family])
+            axes.plot([mark.lower, mark.upper], [y, y], "-", color="black", lw=0.6, zorder=3)
+            axes.plot(mark.seconds, y, color="black", ms=MARK, mew=0.7, zorder=4, ls="", **STYLES[mark.family])
 
     def _draw_floor(self) -> None:
         """What lies below it is shaded: the reference itself is no better."""
@@ -221,17 +225,19 @@ class _ErrorPanel:
         to_dots, to_data = axes.transData.transform, axes.transData.inverted().transform
         anchors = np.array([to_dots((m.seconds, self.scale.place(m.error))) for m in self.marks])
         frame = axes.bbox.extents
+        lines = [*pairwise(self._front())]
+        lines += [((m.lower, y), (m.upper, y)) for m in self.marks for y in [self.scale.place(m.error)]]
         crowd = Crowd(
             anchors,
             MARK / 2 * dots,
             (frame[0] + 2 * dots, frame[1] + 2 * dots, frame[2] - 2 * dots, frame[3] - 2 * dots),
             [self._name_floor()],
-            np.array([[*to_dots(a), *to_dots(b)] for a, b in pairwise(self._front())]).reshape(-1, 4),
+            np.array([[*to_dots(a), *to_dots(b)] for a, b in lines]),
         )
         sizes = np.array([self._size(mark.name) for mark in self.marks])
         for mark, anchor, box in zip(self.marks, anchors, place_labels(crowd, sizes), strict=True):
             x, y = to_data(box[:2])
-            axes.text(x, y, mark.name, fontsize=NAME, va="bottom", ha="left", zorder=5)
+            axes.text(x, y, mark.name, fontsize=NAME, va="bottom", ha="left", zorder=2.5, bbox=_GROUND)
             line = leader(anchor, box)
             if np.hypot(*(line[2:] - line[:2])) > (MARK / 2 + 4) * dots:
                 ends = to_data(line.reshape(2, 2))
@@ -244,8 +250,8 @@ class _ErrorPanel:
         dots = self.axes.figure.dpi / 72
         width, height = self._size(text)
         box = (x - width - 3 * dots, y + 1 * dots, x - 3 * dots, y + 1 * dots + height)
-        place = self.axes.transData.inverted().transform(box[:2])
-        self.axes.text(*place, text, fontsize=NAME, style="italic", va="bottom", ha="left", color="0.25", zorder=5)
+        left, low = self.axes.transData.inverted().transform(box[:2])
+        self.axes.text(left, low, text, fontsize=NAME, style="italic", va="bottom", ha="left", color="0.25", zorder=5)
         return box
 
     def _size(self, text: str) -> tuple[float, float]:
@@ -262,14 +268,19 @@ def _draw_processes(axes: "Axes", study: SceneStudy) -> None:
     for y, m in enumerate(drawn):
         whole = [process.whole for process in (m.cold, m.bare) if process is not None]
         axes.plot([m.warm, *whole], [y] * (1 + len(whole)), "-", color="0.6", lw=0.6, zorder=1)
-        axes.plot(m.warm, y, ms=MARK - 0.5, mec="black", mew=0.7, ls="", zorder=3, **STYLES[m.method.family])
+        axes.plot(m.warm, y, color="black", ms=MARK - 0.5, mew=0.7, ls="", zorder=3, **STYLES[m.method.family])
         for seconds, marker in zip(whole, ("|", "x"), strict=False):
-            axes.plot(seconds, y, marker, ms=MARK - 0.5, mec="black", mew=0.9, zorder=3)
+            axes.plot(seconds, y, marker, color="black", ms=MARK - 0.5, mew=0.9, zorder=3)
     axes.set_yticks(range(len(drawn)), [m.method.name for m in drawn], fontsize=NAME)
     axes.set_ylim(len(drawn) - 0.4, -0.6)
     axes.tick_params(axis="y", length=0)
-    axes.set_title("filled or empty mark: warm;  | a whole process;  x one that compiles its kernels", fontsize=8)
+    axes.set_title("mark: warm;   | a whole process;   x one that has to compile its kernels first", fontsize=8)
     _scale_seconds(axes, [seconds for m in drawn for seconds in _all_seconds(m)])
+
+
+def _quartiles(seconds: Sequence[float]) -> tuple[float, float, float]:
+    lower, middle, upper = np.quantile(seconds, (0.25, 0.5, 0.75))
+    return float(lower), float(middle), float(upper)
 
 
 def _all_seconds(m: Measured) -> list[float]:

@@ -34,14 +34,23 @@ def about_reference(study: SceneStudy) -> str:
     """What the errors are measured against, in a sentence."""
     reference = study.reference
     cutoff = reference.settings.cutoff
-    told = f"no cut-off, depth {reference.settings.max_depth}" if cutoff == 0 else f"cut-off {cutoff:.2g}"
-    told = f"native in {reference.precision}, {told}"
+    told = f"native in {reference.precision}, {'no cut-off' if cutoff == 0 else f'cut-off {cutoff:.2g}'}, "
+    told += f"depth {reference.settings.max_depth}; "
     if reference.left_out is None:
-        return f"{told}; kr + kt > 1, so that what it leaves out has no bound"
+        return f"{told}what it leaves out has no bound, for kr + kt > 1"
     lost = reference.left_out
     if lost.largest == 0:
-        return f"{told}, which leaves out less weight than float32 shows"
-    return f"{told}, which leaves out rays of weight {lost.rms:.1e} (RMS), at most {lost.largest:.1e} in a pixel"
+        return f"{told}what it leaves out is less than float32 shows"
+    return f"{told}what it leaves out weighs {lost.rms:.1e} (RMS), at most {lost.largest:.1e} in a pixel"
+
+
+def left_out_methods(study: SceneStudy) -> list[str]:
+    """A line for every reason for which methods have no figures."""
+    reasons: dict[str, list[str]] = {}
+    for m in study.measured:
+        if m.skipped is not None:
+            reasons.setdefault(m.skipped, []).append(m.method.name)
+    return [f"left out: {', '.join(names)}: {reason}" for reason, names in reasons.items()]
 
 
 def rows(study: SceneStudy) -> list[tuple[str, ...]]:
@@ -58,7 +67,7 @@ def _row(m: Measured, fronts: dict[str, set[str]]) -> tuple[str, ...]:
     return (
         name,
         str(m.difference.disagreeing),
-        f"{m.difference.rms:.1e}" if m.difference.rms else "0",
+        figure(m.difference.rms),
         stars,
         _seconds(m.warm),
         f"{_seconds(min(m.seconds))}-{_seconds(max(m.seconds))}",
@@ -66,6 +75,11 @@ def _row(m: Measured, fronts: dict[str, set[str]]) -> tuple[str, ...]:
         *(_seconds(stages.get(stage)) for stage in STAGES),
         _seconds(m.bare.whole) if m.bare else "",
     )
+
+
+def figure(value: float) -> str:
+    """An error, short."""
+    return f"{value:.1e}" if value else "0"
 
 
 def _seconds(value: float | None) -> str:
@@ -85,40 +99,43 @@ def to_csv(studies: Sequence[SceneStudy]) -> str:
 
 
 def _record(study: SceneStudy, m: Measured) -> dict[str, Any]:
-    """Every figure of a method on a scene, by name."""
-    fronts = front_names(study)
-    found, floor = m.difference, study.reference.floor
-    ran = m.skipped is None and found is not None
-    stages = m.stages if ran else {}
-    settings = m.method.settings(study.settings)
+    """Every figure of a method on a scene, by name; of a skipped one the figures are None."""
+    settings, floor = m.method.settings(study.settings), study.reference.floor
     return {
         "scene": str(study.file),
-        "width": study.settings.width,
-        "height": study.settings.height,
+        "width": settings.width,
+        "height": settings.height,
         "method": m.method.name,
         "renderer": m.method.family,
         "cutoff": settings.cutoff,
         "max_depth": settings.max_depth,
         "threads": settings.threads,
         "skipped": m.skipped,
-        "disagreeing": found.disagreeing if ran else None,
-        "disagreeing_share": _share(m) if ran else None,
-        "rms": _rms(m) if ran else None,
-        "mean": found.mean if ran else None,
-        "largest": found.largest.difference if ran else None,
         "floor_disagreeing": floor.disagreeing,
         "floor_rms": floor.rms,
-        "front_share": m.method.name in fronts["share"] if ran else None,
-        "front_rms": m.method.name in fronts["rms"] if ran else None,
-        "runs": len(m.runs) if ran else None,
-        "warm": m.warm if ran else None,
-        "warm_least": min(m.seconds) if ran else None,
-        "warm_most": max(m.seconds) if ran else None,
-        "cold": m.cold.whole if ran and m.cold else None,
-        **{f"cold_{stage}": stages.get(stage) for stage in STAGES},
-        "first_ever": m.bare.whole if ran and m.bare else None,
-        "first_ever_render": m.bare.stages["render"] if ran and m.bare else None,
+        **(dict.fromkeys(_FIGURES) if m.skipped is not None else _figures(study, m)),
     }
+
+
+_FIGURES = (
+    *("disagreeing", "disagreeing_share", "rms", "mean", "largest", "front_share", "front_rms"),
+    *("runs", "warm", "warm_least", "warm_most", "cold"),
+    *(f"cold_{stage}" for stage in STAGES),
+    *("first_ever", "first_ever_render"),
+)
+
+
+def _figures(study: SceneStudy, m: Measured) -> dict[str, Any]:
+    assert m.difference is not None
+    fronts, stages, found = front_names(study), m.stages, m.difference
+    values = (
+        *(found.disagreeing, _share(m), found.rms, found.mean, found.largest.difference),
+        *(m.method.name in fronts["share"], m.method.name in fronts["rms"]),
+        *(len(m.runs), m.warm, min(m.seconds), max(m.seconds), m.cold.whole if m.cold else None),
+        *(stages.get(stage) for stage in STAGES),
+        *((m.bare.whole, m.bare.stages["render"]) if m.bare else (None, None)),
+    )
+    return dict(zip(_FIGURES, values, strict=True))
 
 
 def to_json(studies: Sequence[SceneStudy]) -> dict[str, Any]:

@@ -9,14 +9,18 @@ Array = NDArray[np.float64]
 Box = tuple[float, float, float, float]
 """Left, lower, right and upper edge."""
 
-_ANGLES = np.linspace(0, 2 * np.pi, 32, endpoint=False)
+_ANGLES = np.linspace(0, 2 * np.pi, 24, endpoint=False)
+_REACHES = np.array([0.0, 0.3, 0.7, 1.2, 2, 3, 4, 5.5, 7, 9, 12, 15])
+"""In heights of the name."""
 _SWEEPS = 6
+_FAR = 80.0
 _COVERS_NAME = 1e4
 _COVERS_MARK = 500.0
 _COVERS_LINE = 60.0
 _LINE_UNDER_NAME = 200.0
+_LINE_PASSES_MARK = 80.0
 _LINES_CROSS = 60.0
-"""What is bad about a place, in units of its distance from the mark."""
+"""What is bad about a place, in dots of distance from its mark; beyond `_FAR` distance counts more than once."""
 
 
 @dataclass(slots=True)
@@ -48,20 +52,23 @@ def place_labels(crowd: Crowd, sizes: Array) -> Array:
     count = len(sizes)
     placed = np.full((count, 4), np.nan)
     leaders = np.full((count, 4), np.nan)
-    gaps = np.linalg.norm(crowd.anchors[:, None] - crowd.anchors[None], axis=2)
-    order = np.argsort((gaps < 4 * sizes[:, 1].mean()).sum(axis=1), kind="stable")[::-1] if count else []
+    places = [_Places(crowd, i, sizes[i]) for i in range(count)]
     for _ in range(_SWEEPS):
         before = placed.copy()
-        for i in order:
-            others = np.arange(count) != i
-            boxes, reach = _candidates(crowd, crowd.anchors[i], sizes[i])
-            cost = _cost(crowd, i, boxes, reach, placed[others], leaders[others])
-            best = int(np.argmin(cost))
-            placed[i] = boxes[best]
-            leaders[i] = leader(crowd.anchors[i], boxes[best])
+        for i in _most_crowded_first(crowd.anchors, 4 * sizes[:, 1]):
+            others = (np.arange(count) != i) & ~np.isnan(placed[:, 0])
+            best = places[i].best(placed[others], leaders[others])
+            placed[i], leaders[i] = places[i].boxes[best], places[i].leaders[best]
         if np.array_equal(before, placed):
             break
     return placed
+
+
+def _most_crowded_first(anchors: Array, near: Array) -> list[int]:
+    """Indices of marks, those first that have the most others nearby."""
+    distances = np.linalg.norm(anchors[:, None] - anchors[None], axis=2)
+    order: list[int] = np.argsort(-(distances < near).sum(axis=1), kind="stable").tolist()
+    return order
 
 
 def leader(anchor: Array, box: Array) -> Array:
@@ -70,41 +77,37 @@ def leader(anchor: Array, box: Array) -> Array:
     return np.array([anchor[0], anchor[1], np.clip(anchor[0], x0, x1), np.clip(anchor[1], y0, y1)])
 
 
-def _candidates(crowd: Crowd, anchor: Array, size: Array) -> tuple[Array, Array]:
-    """Boxes around a mark, moved into the bounds, and how far each is from it."""
-    left, low, right, high = crowd.bounds
-    step = size[1]
-    reaches = crowd.radius + 2 + step * np.concatenate([[0.0, 0.25, 0.6], np.arange(1, 16)])
-    reach, angle = (grid.ravel() for grid in np.meshgrid(reaches, _ANGLES, indexing="ij"))
-    direction = np.stack([np.cos(angle), np.sin(angle)], axis=1)
-    center = anchor + direction * (reach[:, None] + np.abs(direction) * size / 2)
-    corner = np.clip(center - size / 2, [left, low], np.maximum([right, high] - size, [left, low]))
-    boxes = np.concatenate([corner, corner + size], axis=1)
-    nearest = np.clip(anchor, boxes[:, :2], boxes[:, 2:])
-    return boxes, np.linalg.norm(nearest - anchor, axis=1)
+class _Places:
+    """The places where one name may stand, and what is bad about each wherever the other names stand."""
 
+    def __init__(self, crowd: Crowd, own: int, size: Array) -> None:
+        anchor, r = crowd.anchors[own], crowd.radius
+        left, low, right, high = crowd.bounds
+        reach, angle = (grid.ravel() for grid in np.meshgrid(r + 2 + size[1] * _REACHES, _ANGLES, indexing="ij"))
+        direction = np.stack([np.cos(angle), np.sin(angle)], axis=1)
+        corner = anchor + direction * (reach[:, None] + np.abs(direction) * size / 2) - size / 2
+        corner = np.clip(corner, [left, low], np.maximum([right, high] - size, [left, low]))
+        self.boxes = np.concatenate([corner, corner + size], axis=1)
+        nearest = np.clip(anchor, self.boxes[:, :2], self.boxes[:, 2:])
+        self.leaders = np.concatenate([np.broadcast_to(anchor, nearest.shape), nearest], axis=1)
+        taken = np.reshape(crowd.boxes, (-1, 4))
+        marks = np.concatenate([crowd.anchors - r, crowd.anchors + r], axis=1)
+        others = marks[np.arange(len(marks)) != own]
+        far = np.linalg.norm(nearest - anchor, axis=1)
+        self._cost = far + far**2 / _FAR
+        self._cost += _COVERS_NAME * _overlap(self.boxes, taken, 1.0).sum(axis=1)
+        self._cost += _COVERS_MARK * _overlap(self.boxes, marks, 0.0).sum(axis=1)
+        self._cost += _COVERS_LINE * _crosses_box(crowd.segments, self.boxes).sum(axis=1)
+        self._cost += _LINE_UNDER_NAME * _crosses_box(self.leaders, taken).sum(axis=0)
+        self._cost += _LINE_PASSES_MARK * _crosses_box(self.leaders, others).sum(axis=0)
 
-def _cost(crowd: Crowd, own: int, boxes: Array, reach: Array, names: Array, leaders: Array) -> Array:
-    names, leaders = names[~np.isnan(names[:, 0])], leaders[~np.isnan(leaders[:, 0])]
-    cost = reach.copy()
-    taken = np.concatenate([names, np.reshape(crowd.boxes, (-1, 4))])
-    cost += _COVERS_NAME * _overlap(boxes, taken, 1.0).sum(axis=1)
-    r = crowd.radius
-    marks = np.concatenate([crowd.anchors - r, crowd.anchors + r], axis=1)
-    cost += _COVERS_MARK * _overlap(boxes, marks, 0.0).sum(axis=1)
-    cost += _COVERS_LINE * _crosses_box(crowd.segments, boxes).sum(axis=1)
-    anchor = crowd.anchors[own]
-    own_leaders = np.concatenate(
-        [np.broadcast_to(anchor, (len(boxes), 2)), np.clip(anchor, boxes[:, :2], boxes[:, 2:])], 1
-    )
-    cost += _LINE_UNDER_NAME * _crosses_box(own_leaders, taken).sum(axis=0)
-    cost += _LINE_UNDER_NAME * _crosses_box(leaders, boxes).sum(axis=1)
-    cost += _LINES_CROSS * _cross(own_leaders, leaders).sum(axis=1)
-    # The leader of a name passes other marks by.
-    others = np.arange(len(crowd.anchors)) != own
-    far = marks[others] + np.array([r, r, -r, -r]) * 0.3
-    result: Array = cost + _LINES_CROSS * _crosses_box(own_leaders, far).sum(axis=0)
-    return result
+    def best(self, names: Array, leaders: Array) -> int:
+        """Index of the best place beside the other names and their leaders."""
+        cost = self._cost + _COVERS_NAME * _overlap(self.boxes, names, 1.0).sum(axis=1)
+        cost += _LINE_UNDER_NAME * _crosses_box(self.leaders, names).sum(axis=0)
+        cost += _LINE_UNDER_NAME * _crosses_box(leaders, self.boxes).sum(axis=1)
+        cost += _LINES_CROSS * _cross(self.leaders, leaders).sum(axis=1)
+        return int(np.argmin(cost))
 
 
 def _overlap(boxes: Array, others: Array, margin: float) -> NDArray[np.bool_]:

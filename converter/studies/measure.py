@@ -68,7 +68,8 @@ class Measured:
     @property
     def stages(self) -> dict[str, float]:
         """How `cold` splits: start (the interpreter, imports, the end), build (reading the scene too), compile (what
-        its rendering takes longer than a warm one: nothing but that is compiled, or fetched), render, write."""
+        its rendering takes longer than a warm one: nothing but that is compiled, or fetched), render, write.
+        """
         if self.cold is None:
             return {}
         told = self.cold.stages
@@ -94,7 +95,7 @@ class SceneStudy:
         return [m for m in self.measured if m.skipped is None]
 
 
-class _TooSlow(Exception):
+class _TooSlow(Exception):  # noqa: N818 - what it says
     pass
 
 
@@ -119,7 +120,7 @@ def measure_scene(
     """
     name = file.stem
     reference = draw_reference(scene, settings, lambda share: tell(f"{name}: the reference", 0.1 * share))
-    measured = [Measured(method, method.missing()) for method in methods]
+    measured = [Measured(method, method.missing() or method.unfit(scene)) for method in methods]
     renderers = {m.method: m.method.renderer(variant) for m in measured if m.skipped is None}
     for k, m in enumerate(measured):
         tell(f"{name}: {m.method.name}, first picture", 0.1 + 0.25 * k / len(measured))

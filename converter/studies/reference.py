@@ -1,4 +1,4 @@
-"""The picture that errors are measured against: the native tracer in long double, with every ray that can be afforded."""
+"""The picture that errors are measured against: the native tracer in long double, with all rays that it can afford."""
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
