@@ -104,7 +104,7 @@ def test_no_names():
 
 
 def test_a_logarithmic_axis_has_a_place_for_zero():
-    scale = error_scale([1e-2, 3e-5, 0.0], 2e-9)
+    scale = error_scale([1e-2, 3e-5, 0.0], [2e-9])
     assert (scale.low, scale.high) == (pytest.approx(1e-9), pytest.approx(1e-1))
     assert scale.bottom < scale.zero < scale.low
     assert scale.place(0.0) == scale.zero
@@ -112,16 +112,16 @@ def test_a_logarithmic_axis_has_a_place_for_zero():
 
 
 def test_the_axis_has_no_zero_where_nothing_is():
-    scale = error_scale([1e-2, 3e-5], 2e-9)
+    scale = error_scale([1e-2, 3e-5], [2e-9, 1e-5])
     assert scale.zero is None
     assert scale.bottom == scale.low
-    assert error_scale([1e-2], 0.0).zero is not None
+    assert error_scale([1e-2], [0.0]).zero is not None
 
 
 def test_the_axis_of_nothing_but_zeros_and_of_what_is_no_number():
-    scale = error_scale([0.0, 0.0], 0.0)
+    scale = error_scale([0.0, 0.0], [0.0])
     assert scale.bottom < scale.place(0.0) < scale.low < scale.high
-    assert error_scale([float("inf"), 1e-3], 1e-9).place(float("inf")) == pytest.approx(1e-2)
+    assert error_scale([float("inf"), 1e-3], [1e-9]).place(float("inf")) == pytest.approx(1e-2)
 
 
 @pytest.mark.parametrize(("share", "told"), [(1, "100 %"), (0.01, "1 %"), (0.001, "0.1 %"), (1e-5, "0.001 %")])
@@ -172,6 +172,13 @@ def test_zeros_are_drawn_in_a_row_of_their_own():
     assert "0.01 %" in labels
     heights = [line.get_ydata()[0] for line in axes.lines if line.get_marker() == "o"]
     assert heights == [axes.get_yticks()[0], pytest.approx(1e-4)]
+
+
+@pytest.mark.parametrize(("lost", "drawn"), [(1e-3, True), (1e-10, False)])
+def test_what_the_reference_leaves_out_is_a_floor_too(lost, drawn):
+    texts = [text.get_text() for text in chart([study(measured("native"), left_out=LeftOut(0.1, lost))]).axes[1].texts]
+    assert "floor: double against long double" in texts
+    assert ("weight that the reference leaves out" in texts) is drawn
 
 
 def test_a_column_for_each_scene():

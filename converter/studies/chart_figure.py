@@ -10,9 +10,12 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from converter.renderers.methods import Family
+from converter.studies.chart_report import about_reference
 from converter.studies.labels import Box, Crowd, leader, place_labels
+from converter.studies.machine import machine
 from converter.studies.measure import Measured, SceneStudy
 from converter.studies.pareto import pareto_front
+from converter.studies.reference import SMALLEST
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -35,6 +38,7 @@ STYLES: dict[Family, dict[str, Any]] = {
 """Each renderer has a shape and a fill of its own, and no colour."""
 
 
+_FLOOR = "floor: double against long double"
 _GROUND = {"boxstyle": "square,pad=0.05", "facecolor": "white", "alpha": 0.75, "linewidth": 0}
 """Behind a name, so that lines under it do not strike it out."""
 
@@ -72,16 +76,16 @@ class ErrorScale:
         return self.zero if error <= 0 and self.zero is not None else min(max(error, self.low), self.high)
 
 
-def error_scale(errors: Sequence[float], floor: float) -> ErrorScale:
-    """The axis for these errors, and for the floor.
+def error_scale(errors: Sequence[float], floors: Sequence[float]) -> ErrorScale:
+    """The axis for these errors, and for the floors below which they mean nothing.
 
     The row of the zeros takes as much room as its marks need for their names: up to a third of the panel.
     """
-    positive = [error for error in (*errors, floor) if 0 < error < math.inf] or [1e-6]
+    positive = [error for error in (*errors, *floors) if 0 < error < math.inf] or [1e-6]
     low = 10.0 ** math.floor(math.log10(min(positive)) - 0.05)
     high = 10.0 ** math.ceil(math.log10(max(positive)) + 0.05)
     zeros = sum(error == 0 for error in errors)
-    if zeros == 0 and floor > 0:
+    if zeros == 0 and 0 not in floors:
         return ErrorScale(low, high, None, low)
     decades = math.log10(high / low)
     share = min(0.12 + 0.02 * zeros, 0.4)
@@ -117,6 +121,7 @@ def chart(studies: Sequence[SceneStudy]) -> "Figure":
         _draw_processes(processes, study)
         share.set_title(_title(study), fontsize=9)
         panels += [_ErrorPanel.of_shares(share, study), _ErrorPanel.of_rms(rms, study)]
+    figure.supxlabel(_machine(), fontsize=7, color="0.3")
     for panel in panels:
         panel.draw()
     # The layout first: names are placed in dots.
@@ -131,7 +136,13 @@ def _title(study: SceneStudy) -> str:
     settings = study.settings
     runs = max((len(m.runs) for m in study.drawn), default=0)
     size = f"{settings.width} x {settings.height} pixels"
-    return f"{study.file.name}, {size}; medians of up to {runs} runs, bars: quartiles"
+    reference = about_reference(study).partition(";")[0]
+    return f"{study.file.name}, {size}; medians of up to {runs} runs, bars: quartiles\nerrors against {reference}"
+
+
+def _machine() -> str:
+    told = machine()
+    return f"{told['processor']}, {told['cores']} cores" + (f", {told['instructions']}" if told["instructions"] else "")
 
 
 def percent(share: float) -> str:
@@ -150,7 +161,7 @@ class _ErrorPanel:
 
     axes: "Axes"
     marks: list[Mark]
-    floor: float
+    floors: dict[str, float]
     scale: ErrorScale
     tick: Callable[[float], str]
 
@@ -159,23 +170,32 @@ class _ErrorPanel:
         axes.set_ylabel("pixels that differ by more than 1/255", fontsize=8)
         floor = study.reference.floor
         errors = [m.difference.disagreeing / m.difference.pixels for m in study.drawn if m.difference]
-        return cls._of(axes, study, errors, floor.disagreeing / floor.pixels, percent)
+        return cls._of(axes, study, errors, {_FLOOR: floor.disagreeing / floor.pixels}, percent)
 
     @classmethod
     def of_rms(cls, axes: "Axes", study: SceneStudy) -> "_ErrorPanel":
         axes.set_ylabel("RMS difference, where white is 1", fontsize=8)
         errors = [m.difference.rms for m in study.drawn if m.difference]
-        return cls._of(axes, study, errors, study.reference.floor.rms, _power)
+        floors = {_FLOOR: study.reference.floor.rms}
+        lost = study.reference.left_out
+        if lost is not None and lost.rms > max(SMALLEST, study.reference.floor.rms):
+            floors["weight that the reference leaves out"] = lost.rms
+        return cls._of(axes, study, errors, floors, _power)
 
     @classmethod
     def _of(
-        cls, axes: "Axes", study: SceneStudy, errors: list[float], floor: float, tick: Callable[[float], str]
+        cls,
+        axes: "Axes",
+        study: SceneStudy,
+        errors: list[float],
+        floors: dict[str, float],
+        tick: Callable[[float], str],
     ) -> "_ErrorPanel":
         marks = [
             Mark(m.method.name, m.method.family, *_quartiles(m.seconds), error)
             for m, error in zip(study.drawn, errors, strict=True)
         ]
-        return cls(axes, marks, floor, error_scale(errors, floor), tick)
+        return cls(axes, marks, floors, error_scale(errors, list(floors.values())), tick)
 
     def draw(self) -> None:
         """Everything but the names."""
@@ -192,18 +212,19 @@ class _ErrorPanel:
             ticks, labels = [scale.zero, *ticks], ["0", *labels]
             axes.axhline(scale.low, color="0.5", lw=0.6, ls=(0, (6, 3)), zorder=0)
         axes.set_yticks(ticks, labels, fontsize=7)
-        self._draw_floor()
+        self._draw_floors()
         self._draw_front()
         for mark in self.marks:
             y = scale.place(mark.error)
             axes.plot([mark.lower, mark.upper], [y, y], "-", color="black", lw=0.6, zorder=3)
             axes.plot(mark.seconds, y, color="black", ms=MARK, mew=0.7, zorder=4, ls="", **STYLES[mark.family])
 
-    def _draw_floor(self) -> None:
-        """What lies below it is shaded: the reference itself is no better."""
-        y = self.scale.place(self.floor)
-        self.axes.axhspan(self.scale.bottom, y, color="0.95", lw=0, zorder=-3)
-        self.axes.axhline(y, color="0.35", lw=0.9, ls=(0, (1, 1.5)), zorder=1)
+    def _draw_floors(self) -> None:
+        """What lies below them is shaded: the reference itself is no better."""
+        heights = [self.scale.place(floor) for floor in self.floors.values()]
+        self.axes.axhspan(self.scale.bottom, max(heights), color="0.95", lw=0, zorder=-3)
+        for y in heights:
+            self.axes.axhline(y, color="0.35", lw=0.9, ls=(0, (1, 1.5)), zorder=1)
 
     def _draw_front(self) -> None:
         corners = self._front()
@@ -231,7 +252,7 @@ class _ErrorPanel:
             anchors,
             MARK / 2 * dots,
             (frame[0] + 2 * dots, frame[1] + 2 * dots, frame[2] - 2 * dots, frame[3] - 2 * dots),
-            [self._name_floor()],
+            [self._name_floor(*named) for named in self.floors.items()],
             np.array([[*to_dots(a), *to_dots(b)] for a, b in lines]),
         )
         sizes = np.array([self._size(mark.name) for mark in self.marks])
@@ -243,10 +264,10 @@ class _ErrorPanel:
                 ends = to_data(line.reshape(2, 2))
                 axes.plot(ends[:, 0], ends[:, 1], "-", color="0.45", lw=0.4, zorder=1.5)
 
-    def _name_floor(self) -> Box:
-        """Says what the floor is, at its right end, and returns the box that this takes."""
-        text = "floor: double against long double" + (": 0" if self.floor == 0 else "")
-        x, y = self.axes.transData.transform((self.axes.get_xlim()[1], self.scale.place(self.floor)))
+    def _name_floor(self, text: str, floor: float) -> Box:
+        """Says what a floor is, at its right end, and returns the box that this takes."""
+        text += ": 0" if floor == 0 else ""
+        x, y = self.axes.transData.transform((self.axes.get_xlim()[1], self.scale.place(floor)))
         dots = self.axes.figure.dpi / 72
         width, height = self._size(text)
         box = (x - width - 3 * dots, y + 1 * dots, x - 3 * dots, y + 1 * dots + height)

@@ -17,7 +17,7 @@ from converter.scene.settings import Settings
 from converter.studies.processes import Process, ProcessFailed, render_in_a_process
 from converter.studies.reference import Reference, draw_reference
 
-LONGEST = 30.0
+LONGEST = 20.0
 """Seconds after which a method's first picture is given up."""
 ENOUGH = 2.0
 """Seconds of rendering after which a method has run often enough ..."""
