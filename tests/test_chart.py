@@ -3,6 +3,7 @@
 import csv
 import io
 import json
+import os
 import subprocess
 from dataclasses import replace
 from itertools import combinations
@@ -16,6 +17,7 @@ from studies_fakes import crowded_study, difference, measured, study
 
 from converter.commands import chart as command
 from converter.commands import main
+from converter.commands.files import check_target, replacing
 from converter.renderers.base import RendererUnavailable, Rendering
 from converter.renderers.methods import METHODS, Method
 from converter.renderers.native import NativeRenderer
@@ -643,3 +645,38 @@ def test_none_of_the_methods_draws(whitted, scene, tmp_path, monkeypatch):
     status, _, err = whitted("chart", scene, "-o", tmp_path / "a.svg", "--methods", "mitsuba", "--size", "8x6")
     assert status == 2
     assert f"no method draws {scene}; left out: mitsuba: not here" in err
+
+
+# ---- Files
+
+
+def test_a_file_is_replaced_whole_or_not_at_all(tmp_path):
+    file = tmp_path / "a.csv"
+    file.write_text("older")
+    with pytest.raises(KeyboardInterrupt), replacing(file) as temporary:
+        temporary.write_text("half")
+        raise KeyboardInterrupt
+    assert file.read_text() == "older"
+    with replacing(file) as temporary:
+        temporary.write_text("newer")
+    assert file.read_text() == "newer"
+    assert list(tmp_path.iterdir()) == [file]
+
+
+def test_a_link_stays_and_what_is_no_file_is_written_as_it_is(tmp_path):
+    (tmp_path / "link").symlink_to("file")
+    with replacing(tmp_path / "link") as temporary:
+        temporary.write_text("new")
+    assert (tmp_path / "link").is_symlink()
+    assert (tmp_path / "file").read_text() == "new"
+    os.mkfifo(tmp_path / "pipe")
+    with replacing(tmp_path / "pipe") as pipe:
+        assert pipe == tmp_path / "pipe"
+    assert (tmp_path / "pipe").is_fifo()
+
+
+def test_a_target_that_cannot_be_written(tmp_path):
+    check_target(tmp_path / "a")
+    for path in (tmp_path, tmp_path / "nowhere" / "a"):
+        with pytest.raises(OSError):
+            check_target(path)

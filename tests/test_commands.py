@@ -123,7 +123,7 @@ def test_light_start(tmp_path):
         import sys
         from converter.commands import main, raytrace
         main.main(["--help"]); raytrace.main(sys.argv[1:])
-        heavy = {"numpy", "mitsuba", "drjit", "rich", "OpenImageIO", "shutil"} & set(sys.modules)
+        heavy = {"numpy", "mitsuba", "drjit", "rich", "OpenImageIO", "shutil", "matplotlib"} & set(sys.modules)
         assert not heavy, heavy
     """
     figure1 = Path(__file__).parents[1] / "scenes" / "figure1.in"

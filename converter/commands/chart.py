@@ -69,9 +69,9 @@ def _methods(text: str) -> "list[Method]":
 
 def run(arguments: argparse.Namespace) -> int:
     """Measure, draw, and tell."""
+    from converter.commands.files import check_target, replacing
     from converter.commands.json_out import check_json, write_json
     from converter.studies.chart_figure import ENDINGS
-    from converter.studies.files import check_target, replacing
 
     out: Path = arguments.out
     if out.suffix.lower() not in ENDINGS:

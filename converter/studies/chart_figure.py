@@ -105,8 +105,9 @@ def draw_chart(studies: Sequence[SceneStudy], file: Path) -> None:
     # Text stays text, and the same figures give the same file.
     with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "whitted", "axes.linewidth": 0.6}):
         figure = chart(studies)
-        metadata = {"Date": None} if file.suffix.lower() == ".svg" else {}
-        figure.savefig(file, dpi=DOTS, metadata=metadata)
+        ending = file.suffix.lower()
+        metadata = {"Date": None} if ending == ".svg" else {}
+        figure.savefig(file, format=ending[1:], dpi=DOTS, metadata=metadata)
 
 
 def chart(studies: Sequence[SceneStudy]) -> "Figure":

@@ -24,11 +24,18 @@ def check_target(path: Path) -> None:
 
 @contextmanager
 def replacing(path: Path) -> Iterator[Path]:
-    """A new file beside `path` to write into, which takes its place when the block ends well, and goes when not."""
-    temporary = path.with_name(f".whitted-{os.getpid()}-{os.urandom(4).hex()}{path.suffix}")
+    """A new file to write into, which takes the place of `path` when the block ends well, and goes when not.
+
+    A link stays, and what it points to is replaced. What is no file, such as a pipe or /dev/null, is written as it is.
+    """
+    target = path.resolve()
+    if target.exists() and not target.is_file():
+        yield target
+        return
+    temporary = target.with_name(f".whitted-{os.getpid()}-{os.urandom(4).hex()}{path.suffix}")
     try:
         yield temporary
-        temporary.replace(path)
+        temporary.replace(target)
     finally:
         with suppress(OSError):  # it was never made, or is in its place
             temporary.unlink()
