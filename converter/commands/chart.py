@@ -150,13 +150,14 @@ def _measure(
 
 def _print(study: "SceneStudy") -> None:
     from converter.commands.tables import print_table
-    from converter.studies.chart_report import ALIGN, HEADER, LEGEND, about_reference, figure, left_out_methods, rows
+    from converter.studies import chart_report as report
 
     floor = study.reference.floor
-    title = f"{study.file}, {study.settings.width} x {study.settings.height} pixels, seconds"
-    print_table(rows(study), HEADER, ALIGN, title)
-    print(f"\nagainst {about_reference(study)}")
-    print(f"floor, double against long double: {floor.disagreeing} pixels, RMS {figure(floor.rms)}\n{LEGEND}")
-    for line in left_out_methods(study):
-        print(line)
-    print()
+    title = f"{study.file}, {study.settings.width} x {study.settings.height} pixels"
+    print_table(report.error_rows(study), report.ERROR_HEADER, report.ERROR_ALIGN, title)
+    print(f"\nagainst {report.about_reference(study)}")
+    print(f"floor, double against long double: {floor.disagreeing} pixels, RMS {report.figure(floor.rms)}")
+    print(f"{report.ERROR_LEGEND}\n")
+    title = "seconds of a whole process"
+    print_table(report.process_rows(study), report.PROCESS_HEADER, report.PROCESS_ALIGN, title)
+    print("\n".join(["", report.PROCESS_LEGEND, *report.left_out_methods(study), ""]))

@@ -83,7 +83,7 @@ def error_scale(errors: Sequence[float], floors: Sequence[float]) -> ErrorScale:
     """
     positive = [error for error in (*errors, *floors) if 0 < error < math.inf] or [1e-6]
     low = 10.0 ** math.floor(math.log10(min(positive)) - 0.05)
-    high = 10.0 ** math.ceil(math.log10(max(positive)) + 0.05)
+    high = 10.0 ** math.ceil(math.log10(max(positive)) + 0.12)
     zeros = sum(error == 0 for error in errors)
     if zeros == 0 and 0 not in floors:
         return ErrorScale(low, high, None, low)

@@ -11,12 +11,17 @@ from converter.studies.measure import Measured, SceneStudy
 from converter.studies.pareto import pareto_front
 
 STAGES = ("start", "build", "compile", "render", "write")
-HEADER = ("", "disagree", "RMS", "", "warm", "least-most", "cold", *STAGES, "first ever")
-ALIGN = "lrrlrr" + "r" * 7
-LEGEND = (
-    "disagree: pixels that differ by more than 1/255; RMS: of all channels; * nothing is both faster and nearer\n"
-    "warm: seconds to render once all is loaded and compiled, the median; cold: a whole process, which splits into\n"
-    "start to write; first ever: a whole process that has to compile its kernels"
+ERROR_HEADER = ("", "disagree", "", "RMS", "", "warm", "least", "most", "runs")
+ERROR_ALIGN = "lrlrlrrrr"
+ERROR_LEGEND = (
+    "disagree: pixels that differ by more than 1/255; RMS: of the channels' differences, where white is 1\n"
+    "warm: seconds to render, once all is loaded and compiled, the median; *: no method is both faster and nearer"
+)
+PROCESS_HEADER = ("", "whole", *STAGES, "first ever")
+PROCESS_ALIGN = "lrrrrrrr"
+PROCESS_LEGEND = (
+    "start: the interpreter and the libraries; compile: what it renders longer than a warm one, to fetch its kernels\n"
+    "first ever: a process that has to compile its kernels, for nobody has drawn such a scene here before"
 )
 
 
@@ -53,28 +58,31 @@ def left_out_methods(study: SceneStudy) -> list[str]:
     return [f"left out: {', '.join(names)}: {reason}" for reason, names in reasons.items()]
 
 
-def rows(study: SceneStudy) -> list[tuple[str, ...]]:
-    """A row for every method that was drawn, under `HEADER`."""
+def error_rows(study: SceneStudy) -> list[tuple[str, ...]]:
+    """A row for every method that was drawn, under `ERROR_HEADER`."""
     fronts = front_names(study)
-    return [_row(m, fronts) for m in study.drawn]
+    return [_error_row(m, fronts) for m in study.drawn]
 
 
-def _row(m: Measured, fronts: dict[str, set[str]]) -> tuple[str, ...]:
+def _error_row(m: Measured, fronts: dict[str, set[str]]) -> tuple[str, ...]:
     assert m.difference is not None
-    name = m.method.name
-    stars = ("*" if name in fronts["share"] else " ") + ("*" if name in fronts["rms"] else " ")
-    stages = m.stages
-    return (
-        name,
-        str(m.difference.disagreeing),
-        figure(m.difference.rms),
-        stars,
-        _seconds(m.warm),
-        f"{_seconds(min(m.seconds))}-{_seconds(max(m.seconds))}",
-        _seconds(m.cold.whole) if m.cold else "",
-        *(_seconds(stages.get(stage)) for stage in STAGES),
-        _seconds(m.bare.whole) if m.bare else "",
-    )
+    name, found = m.method.name, m.difference
+    share, rms = ("*" if name in fronts[error] else "" for error in ("share", "rms"))
+    seconds = map(_seconds, (m.warm, min(m.seconds), max(m.seconds)))
+    return (name, str(found.disagreeing), share, figure(found.rms), rms, *seconds, str(len(m.runs)))
+
+
+def process_rows(study: SceneStudy) -> list[tuple[str, ...]]:
+    """A row for every method that was drawn, under `PROCESS_HEADER`."""
+    return [
+        (
+            m.method.name,
+            _seconds(m.cold.whole if m.cold else None),
+            *(_seconds(m.stages.get(stage)) for stage in STAGES),
+            _seconds(m.bare.whole if m.bare else None),
+        )
+        for m in study.drawn
+    ]
 
 
 def figure(value: float) -> str:

@@ -18,7 +18,7 @@ _COVERS_NAME = 1e4
 _COVERS_MARK = 500.0
 _COVERS_LINE = 60.0
 _LINE_UNDER_NAME = 200.0
-_LINE_PASSES_MARK = 80.0
+_LINE_PASSES_MARK = 200.0
 _LINES_CROSS = 60.0
 """What is bad about a place, in dots of distance from its mark; beyond `_FAR` distance counts more than once."""
 
@@ -97,7 +97,7 @@ class _Places:
         self._cost = far + far**2 / _FAR
         self._cost += _COVERS_NAME * _overlap(self.boxes, taken, 1.0).sum(axis=1)
         self._cost += _COVERS_MARK * _overlap(self.boxes, marks, 0.0).sum(axis=1)
-        self._cost += _COVERS_LINE * _crosses_box(crowd.segments, self.boxes).sum(axis=1)
+        self._cost += _COVERS_LINE * _crosses_box(crowd.segments, self.boxes).any(axis=1)
         self._cost += _LINE_UNDER_NAME * _crosses_box(self.leaders, taken).sum(axis=0)
         self._cost += _LINE_PASSES_MARK * _crosses_box(self.leaders, others).sum(axis=0)
 

@@ -20,9 +20,7 @@ from converter.studies.reference import Reference, draw_reference
 LONGEST = 20.0
 """Seconds after which a method's first picture is given up."""
 ENOUGH = 2.0
-"""Seconds of rendering after which a method has run often enough ..."""
-LEAST_RUNS = 2
-"""... if it has run so often."""
+"""Seconds of rendering, after the first picture, after which a method has run often enough."""
 
 Tell = Callable[[str, float], None]
 """Told what is being done, and the finished share of everything (0..1)."""
@@ -130,7 +128,7 @@ def measure_scene(
     for turn in range(runs):
         for k, m in enumerate(drawn):
             tell(f"{name}: {m.method.name}, run {turn + 1}", 0.35 + 0.25 * (turn + k / len(drawn)) / runs)
-            if turn < LEAST_RUNS or sum(m.seconds) < ENOUGH:
+            if sum(m.seconds) < ENOUGH:
                 m.runs.append(renderers[m.method].render(scene, m.method.settings(settings)).seconds)
     for k, m in enumerate(drawn):
         tell(f"{name}: {m.method.name}, a process of its own", 0.6 + 0.4 * k / len(drawn))
