@@ -1,0 +1,110 @@
+"""POV-Ray, seen as one of the renderers, where it is installed."""
+
+import math
+import re
+import shutil
+import subprocess
+import tempfile
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from converter.renderers.base import Interrupted, Progress, RendererUnavailable, Rendering
+from converter.scene.model import Scene
+from converter.scene.settings import Settings
+
+PROGRAM = "povray"
+_TRACE_TIME = re.compile(r"Trace Time:.*?\(([\d.]+) seconds\)")
+_COMPLAINT = re.compile(r"((?:Parse|Fatal|Possible Parse) Error|Problem):?\s", re.IGNORECASE)
+
+
+class PovrayError(RuntimeError):
+    """POV-Ray gave up; the message says what it complained of."""
+
+
+@dataclass(frozen=True)
+class PovrayRenderer:
+    """Draws with the program `povray`, version 3.7, what `whitted convert SCENE FILE.pov` writes.
+
+    Its pictures have 16 bits a channel, and are clamped to 0..1.
+    """
+
+    @property
+    def name(self) -> str:
+        """Always "povray"."""
+        return "povray"
+
+    def render(self, scene: Scene, settings: Settings, progress: Progress | None = None) -> Rendering:
+        """Draw `scene`.
+
+        `seconds["render"]` is POV-Ray's own trace time, `"start"` the rest of its process, `"build"` the conversion.
+        `statistics["omissions"]` is what it draws otherwise than the scene means it.
+
+        Raises:
+            RendererUnavailable: POV-Ray is not installed.
+            PovrayError: it failed.
+            ValueError: a texture cannot be read.
+            Interrupted: Ctrl-C while it was drawing.
+
+        """
+        import numpy as np
+
+        from converter.images.texture import read_texture
+        from converter.renderers.native import available_cores
+        from converter.to_povray.export import export_povray
+
+        program = shutil.which(PROGRAM)
+        if program is None:
+            raise RendererUnavailable(
+                "POV-Ray is not installed; install version 3.7 (Debian, Ubuntu: apt install povray; "
+                "Fedora: dnf install povray; macOS: brew install povray)"
+            )
+        started = time.perf_counter()
+        pixels = np.zeros((settings.height, settings.width, 3), dtype=np.float32)
+        seconds = {"build": 0.0, "start": 0.0, "render": 0.0}
+        n = math.isqrt(settings.samples)
+        with tempfile.TemporaryDirectory() as folder:
+            exported, _ = export_povray(scene, settings, Path(folder, "scene.pov"))
+            seconds["build"] = time.perf_counter() - started
+            options = [f"+W{n * settings.width}", f"+H{n * settings.height}", "-A", "-D", "+FP16", "File_Gamma=1"]
+            options += [f"+WT{settings.threads or available_cores()}", "+Iscene.pov", "+Opicture.ppm"]
+            began = time.perf_counter()
+            try:
+                seconds["render"] = _run([program, *options], folder)
+            except KeyboardInterrupt:
+                raise Interrupted(Rendering(pixels, settings.width, settings.height, seconds)) from None
+            seconds["start"] = time.perf_counter() - began - seconds["render"]
+            fine = np.asarray(read_texture(Path(folder, "picture.ppm")).texels)
+        cells = fine.reshape(settings.height, n, settings.width, n, 3)
+        pixels[:] = cells.mean(axis=(1, 3), dtype=np.float64)
+        if progress is not None:
+            progress(1.0)
+        statistics = {"clamped": True, "omissions": exported.omissions}
+        return Rendering(pixels, settings.width, settings.height, seconds, statistics)
+
+
+def _run(command: list[str], folder: str) -> float:
+    """Run POV-Ray in `folder`, where alone it may read and write, and return its trace time in seconds."""
+    # In a session of its own, so that Ctrl-C reaches it through us alone.
+    process = subprocess.Popen(
+        command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
+        text=True, errors="replace", start_new_session=True,
+    )  # fmt: skip
+    try:
+        _, told = process.communicate()
+    except BaseException:
+        process.kill()
+        process.wait()
+        raise
+    found = _TRACE_TIME.search(told)
+    if process.returncode != 0 or found is None:
+        raise PovrayError(f"POV-Ray failed: {_complaint(told) or f'exit status {process.returncode}'}")
+    return float(found[1])
+
+
+def _complaint(told: str) -> str:
+    """The lines in which POV-Ray says what is wrong."""
+    found = _COMPLAINT.search(told)
+    if found is None:
+        return ""
+    return " ".join(told[told.rfind("\n", 0, found.start()) + 1 :].split()[:60])

@@ -1,0 +1,58 @@
+"""Scenes in POV-Ray's language into files: the scene, and images beside it."""
+
+import os
+import re
+from pathlib import Path
+
+from converter.scene.model import Scene
+from converter.scene.settings import Settings
+from converter.to_mitsuba.export import ExportError
+from converter.to_povray.pigments import MARK as IMAGE_MARK
+from converter.to_povray.scene import MARK, PovrayScene, povray_scene
+
+
+def export_povray(scene: Scene, settings: Settings, file: Path) -> tuple[PovrayScene, list[Path]]:
+    """Write `scene`, drawn with `settings`, for POV-Ray; return it, and the files written, the scene first.
+
+    The scene's file appears last, so never without its images, and each file as a whole.
+
+    Raises:
+        ExportError: one of the files exists, and this function has not written it.
+        TextureError, OSError: as `povray_scene` and the file system have it.
+
+    """
+    name = re.sub(r"[^A-Za-z0-9_.-]", "_", file.stem)  # POV-Ray's strings take no other without ado
+    exported = povray_scene(scene, settings, name)
+    images = {file.with_name(image): data for image, data in exported.textures.items()}
+    _check(file, MARK.encode())
+    for image in images:
+        _check(image, IMAGE_MARK)
+    for image, data in images.items():
+        _write(image, data)
+    _write(file, exported.text.encode())
+    for left in file.parent.glob(f"{name}_pigment_*.ppm"):  # of an earlier export
+        if left not in images and _is_ours(left, IMAGE_MARK):
+            left.unlink()
+    return exported, [file, *images]
+
+
+def _check(file: Path, mark: bytes) -> None:
+    if file.is_dir():
+        raise ExportError(f"{file} is a folder: expected a file to write the scene to")
+    if file.exists() and not _is_ours(file, mark):
+        raise ExportError(f"{file} is not of an exported scene: name another file")
+
+
+def _is_ours(file: Path, mark: bytes) -> bool:
+    with file.open("rb") as opened:
+        return mark in opened.read(100)
+
+
+def _write(file: Path, data: bytes) -> None:
+    """Write a file, which appears whole or not at all."""
+    temporary = file.with_name(f".whitted-{os.getpid()}-{os.urandom(4).hex()}")
+    try:
+        temporary.write_bytes(data)
+        temporary.replace(file)
+    finally:  # an interrupt too
+        temporary.unlink(missing_ok=True)

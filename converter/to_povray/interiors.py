@@ -1,0 +1,127 @@
+"""Refractive indices of transparent bodies.
+
+POV-Ray remembers which bodies a ray is in, and takes n1/n2 from the innermost one and the one that it enters. Our
+finishes say n1/n2 themselves, whatever is around. So a body's index is multiplied by that of the body around it.
+
+POV-Ray finds out by itself which bodies the camera is in, but not of every kind. A body with the camera in it is
+therefore made of what is outside of it, with the reciprocal index: its `inverse`, which the camera is not in.
+"""
+
+import math
+from enum import Enum
+from itertools import combinations
+from typing import NamedTuple
+
+from converter.scene.model import Polyhedron, Scene, Shape, Sphere, Vector
+from converter.scene.needs import SceneNeeds
+
+
+class Interior(NamedTuple):
+    """What POV-Ray is told of the inside of a body: its index, and whether the body is its own inverse."""
+
+    ior: float
+    inverse: bool
+
+
+class Relation(Enum):
+    """How two bodies lie to each other."""
+
+    APART = 0
+    FIRST_INSIDE = 1
+    SECOND_INSIDE = 2
+    OVERLAP = 3
+
+
+def interiors(scene: Scene, needs: SceneNeeds) -> tuple[dict[int, Interior], list[tuple[int, int]]]:
+    """The interior of each object that transmits, by its index, and pairs of such objects that overlap."""
+    bodies = [i for i, o in enumerate(scene.objects) if scene.finishes[o.finish].kt > 0]
+    inverse = {i: _holds(scene.objects[i].shape, scene.camera.eye) for i in bodies}
+    around: dict[int, set[int]] = {i: set() for i in bodies}
+    overlaps = []
+    for i, j in combinations(bodies, 2):
+        match relation(scene, needs, i, j), inverse[i], inverse[j]:
+            case (Relation.FIRST_INSIDE, False, False) | (Relation.SECOND_INSIDE, True, True):
+                around[i].add(j)
+            case (Relation.SECOND_INSIDE, False, False) | (Relation.FIRST_INSIDE, True, True):
+                around[j].add(i)
+            case (Relation.APART, False, True):
+                around[i].add(j)
+            case (Relation.APART, True, False):
+                around[j].add(i)
+            case (Relation.OVERLAP, _, _):
+                overlaps.append((i, j))
+    iors: dict[int, float] = {}
+    for i in sorted(bodies, key=lambda body: len(around[body])):
+        own = needs.etas[scene.objects[i].finish]
+        innermost = max(around[i], key=lambda body: len(around[body]), default=None)
+        iors[i] = (own if inverse[i] else 1 / own) * (1.0 if innermost is None else iors[innermost])
+    return {i: Interior(iors[i], inverse[i]) for i in bodies}, overlaps
+
+
+def relation(scene: Scene, needs: SceneNeeds, i: int, j: int) -> Relation:
+    """How objects `i` and `j` lie to each other. A ball that passes an edge of a polyhedron may count as overlapping."""
+    if needs.bounded[i] and needs.bounded[j]:
+        (low, high), (other_low, other_high) = needs.boxes[i], needs.boxes[j]
+        if any(map(_less, high, other_low)) or any(map(_less, other_high, low)):
+            return Relation.APART
+    first, second = scene.objects[i].shape, scene.objects[j].shape
+    if _apart(first, second):
+        return Relation.APART
+    if needs.bounded[i] and _inside(first, second):
+        return Relation.FIRST_INSIDE
+    if needs.bounded[j] and _inside(second, first):
+        return Relation.SECOND_INSIDE
+    return Relation.OVERLAP
+
+
+def _less(a: float, b: float) -> bool:
+    return a < b
+
+
+def _holds(shape: Shape, point: Vector) -> bool:
+    if isinstance(shape, Sphere):
+        return math.dist(shape.center, point) < shape.radius
+    return max(_heights(shape, point)) < 0
+
+
+def _apart(first: Shape, second: Shape) -> bool:
+    match first, second:
+        case Sphere(), Sphere():
+            return math.dist(first.center, second.center) >= first.radius + second.radius
+        case Sphere(), Polyhedron():
+            return max(_heights(second, first.center)) >= first.radius
+        case Polyhedron(), Sphere():
+            return _apart(second, first)
+        case Polyhedron(), Polyhedron():
+            return not _solid(first, second)
+    return False
+
+
+def _inside(inner: Shape, outer: Shape) -> bool:
+    match inner, outer:
+        case Sphere(), Sphere():
+            return math.dist(inner.center, outer.center) + inner.radius <= outer.radius
+        case Sphere(), Polyhedron():
+            return max(_heights(outer, inner.center)) <= -inner.radius
+        case Polyhedron(), Sphere():
+            from native_tracer.halfspaces import polyhedron_faces
+
+            corners = [face.points[k : k + 3] for face in polyhedron_faces(inner.planes) for k in range(0, len(face.points), 3)]
+            return bool(corners) and all(math.dist(corner, outer.center) <= outer.radius for corner in corners)
+        case Polyhedron(), Polyhedron():
+            beyond = (Polyhedron(((-a, -b, -c, -d),)) for a, b, c, d in outer.planes)
+            return not any(_solid(inner, halfspace) for halfspace in beyond)
+    return False
+
+
+def _solid(first: Polyhedron, second: Polyhedron) -> bool:
+    """Whether two polyhedra have a volume in common."""
+    from native_tracer.halfspaces import polyhedron_facts
+
+    return polyhedron_facts([first.planes + second.planes])[0].solid
+
+
+def _heights(polyhedron: Polyhedron, point: Vector) -> list[float]:
+    """Of a point above each plane."""
+    x, y, z = point
+    return [(a * x + b * y + c * z + d) / math.hypot(a, b, c) for a, b, c, d in polyhedron.planes]
