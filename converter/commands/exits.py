@@ -24,6 +24,7 @@ _UNUSABLE = (
     ("converter.compare.metrics", "SizeMismatch"),
     ("converter.to_mitsuba.export", "ExportError"),
     ("converter.to_mitsuba.polyhedra", "PolyhedronError"),
+    ("converter.renderers.povray", "PovrayError"),
 )
 _UNAVAILABLE = (("converter.renderers.base", "RendererUnavailable"), ("mitsuba_plugins.backend", "BackendError"))
 """Modules and the errors in them that a user can mend; by name, so that telling one loads nothing."""

@@ -52,6 +52,7 @@ class PovrayRenderer:
         from converter.images.texture import read_texture
         from converter.renderers.native import available_cores
         from converter.to_povray.export import export_povray
+        from converter.to_povray.scene import draw_options
 
         program = shutil.which(PROGRAM)
         if program is None:
@@ -66,11 +67,10 @@ class PovrayRenderer:
         with tempfile.TemporaryDirectory() as folder:
             exported, _ = export_povray(scene, settings, Path(folder, "scene.pov"))
             seconds["build"] = time.perf_counter() - started
-            options = [f"+W{n * settings.width}", f"+H{n * settings.height}", "-A", "-D", "+FP16", "File_Gamma=1"]
-            options += [f"+WT{settings.threads or available_cores()}", "+Iscene.pov", "+Opicture.ppm"]
+            options = [*draw_options(settings), f"+WT{settings.threads or available_cores()}"]
             began = time.perf_counter()
             try:
-                seconds["render"] = _run([program, *options], folder)
+                seconds["render"] = _run([program, "+Iscene.pov", "+Opicture.ppm", *options], folder)
             except KeyboardInterrupt:
                 raise Interrupted(Rendering(pixels, settings.width, settings.height, seconds)) from None
             seconds["start"] = time.perf_counter() - began - seconds["render"]

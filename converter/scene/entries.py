@@ -78,7 +78,7 @@ class Reader:
         problems: address of a word and what is wrong with it.
         misread: how many of these are about words that are missing or left over.
         textures: the file of each texmap, by the address of its name.
-        finish_lines: the line of each finish.
+        light_lines, pigment_lines, finish_lines: the line of each light, pigment and finish.
         announced: the last count that was read, and is 0 if it was none.
         pigments, finishes: how many an object can choose from.
     """
@@ -91,6 +91,8 @@ class Reader:
         self.problems: list[tuple[int, str]] = []
         self.misread = 0
         self.textures: dict[int, Path] = {}
+        self.light_lines: dict[int, int] = {}
+        self.pigment_lines: dict[int, int] = {}
         self.finish_lines: dict[int, int] = {}
         self.announced = 0
         self.pigments = 0
@@ -108,6 +110,8 @@ class Reader:
         self.problems += attempt.problems
         self.misread += attempt.misread
         self.textures.update(attempt.textures)
+        self.light_lines.update(attempt.light_lines)
+        self.pigment_lines.update(attempt.pigment_lines)
         self.finish_lines.update(attempt.finish_lines)
         self.announced = attempt.announced
 
@@ -219,6 +223,7 @@ def camera(reader: Reader, starts: tuple[int, int, int, int]) -> Camera:
 def light(reader: Reader, at: int, k: int) -> tuple[Light, int]:
     """A light; the first one is the ambient light, of which only the colour counts."""
     x, y, z, red, green, blue, a, b, c = reader.numbers(at, LIGHT, at)
+    reader.light_lines[k] = reader.text.line(at)
     if k and _never_positive(a, b, c):
         reader.complain(at + 6, "the attenuation a + b d + c d^2 must be positive at some distance d")
     return Light((x, y, z), (red, green, blue), (a, b, c)), at + 9
@@ -249,6 +254,7 @@ def _never_positive(a: float, b: float, c: float) -> bool:
 
 def pigment(reader: Reader, at: int, k: int) -> tuple[Pigment, int]:
     """A pigment, by its keyword."""
+    reader.pigment_lines[k] = reader.text.line(at)
     word = reader.word(at, "a pigment (solid, checker or texmap)")
     if word not in PIGMENTS:
         raise Lost(at, f"expected solid, checker or texmap, found {shown(word)}{did_you_mean(word, tuple(PIGMENTS))}")

@@ -113,3 +113,5 @@ class Scene:
     objects: tuple[Object, ...]
     file: Path | None = field(default=None, compare=False)
     finish_lines: tuple[int, ...] = field(default=(), compare=False)
+    light_lines: tuple[int, ...] = field(default=(), compare=False)
+    pigment_lines: tuple[int, ...] = field(default=(), compare=False)

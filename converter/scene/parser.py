@@ -93,6 +93,8 @@ def _read_scene(reader: Reader, in_lines: bool) -> Scene | None:
         finishes=tuple(finishes),
         objects=tuple(objects),
         file=reader.text.file,
+        light_lines=tuple(reader.light_lines[k] for k in range(1, len(lights))),
+        pigment_lines=tuple(reader.pigment_lines[k] for k in range(len(pigments))),
         finish_lines=tuple(reader.finish_lines[k] for k in range(len(finishes))),
     )
 

@@ -10,6 +10,7 @@ therefore made of what is outside of it, with the reciprocal index: its `inverse
 import math
 from enum import Enum
 from itertools import combinations
+from operator import lt
 from typing import NamedTuple
 
 from converter.scene.model import Polyhedron, Scene, Shape, Sphere, Vector
@@ -59,10 +60,10 @@ def interiors(scene: Scene, needs: SceneNeeds) -> tuple[dict[int, Interior], lis
 
 
 def relation(scene: Scene, needs: SceneNeeds, i: int, j: int) -> Relation:
-    """How objects `i` and `j` lie to each other. A ball that passes an edge of a polyhedron may count as overlapping."""
+    """How objects `i` and `j` lie to each other. A ball close to an edge of a polyhedron may count as overlapping."""
     if needs.bounded[i] and needs.bounded[j]:
         (low, high), (other_low, other_high) = needs.boxes[i], needs.boxes[j]
-        if any(map(_less, high, other_low)) or any(map(_less, other_high, low)):
+        if any(map(lt, high, other_low)) or any(map(lt, other_high, low)):
             return Relation.APART
     first, second = scene.objects[i].shape, scene.objects[j].shape
     if _apart(first, second):
@@ -72,10 +73,6 @@ def relation(scene: Scene, needs: SceneNeeds, i: int, j: int) -> Relation:
     if needs.bounded[j] and _inside(second, first):
         return Relation.SECOND_INSIDE
     return Relation.OVERLAP
-
-
-def _less(a: float, b: float) -> bool:
-    return a < b
 
 
 def _holds(shape: Shape, point: Vector) -> bool:
@@ -106,8 +103,9 @@ def _inside(inner: Shape, outer: Shape) -> bool:
         case Polyhedron(), Sphere():
             from native_tracer.halfspaces import polyhedron_faces
 
-            corners = [face.points[k : k + 3] for face in polyhedron_faces(inner.planes) for k in range(0, len(face.points), 3)]
-            return bool(corners) and all(math.dist(corner, outer.center) <= outer.radius for corner in corners)
+            faces = [face.points for face in polyhedron_faces(inner.planes)]
+            corners = [points[k : k + 3] for points in faces for k in range(0, len(points), 3)]
+            return all(math.dist(corner, outer.center) <= outer.radius for corner in corners)
         case Polyhedron(), Polyhedron():
             beyond = (Polyhedron(((-a, -b, -c, -d),)) for a, b, c, d in outer.planes)
             return not any(_solid(inner, halfspace) for halfspace in beyond)

@@ -64,7 +64,7 @@ def fades(attenuation: tuple[float, float, float], size: float) -> tuple[list[Fa
 
 
 def _pole(at: float, residue: float, closest: float) -> Fade:
-    """residue / (d + at)."""
+    """That of residue / (d + at)."""
     distance = max(at, closest)
     return Fade(residue / (2 * distance), 1.0, distance)
 

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
-from converter.images.texture import Texture, read_texture
+from converter.images.texture import Texture
 from converter.scene.model import Checker, Pigment, Solid, Texmap, Vector
 from converter.to_povray.text import number, rgb, vector
 
@@ -50,14 +50,16 @@ class Image:
         return b"P6\n" + MARK + b"%d %d\n%d\n" % (width, height, most) + raster.tobytes()
 
 
-def pigment(source: Pigment, transmitted: float = 0.0, image: Image | None = None, boxes: Sequence[Box] = ()) -> str:
+def pigment(
+    source: Pigment, transmitted: float = 0.0, image: Image | None = None, boxes: Sequence[Box] | None = None
+) -> str:
     """A `pigment` block.
 
     Args:
         source: the pigment.
         transmitted: how much of the light that comes from behind it lets through.
         image: that of a texmap.
-        boxes: what has this pigment lies in them.
+        boxes: what has this pigment lies in them; None where it has no bounds.
 
     """
     match source:
@@ -75,7 +77,7 @@ def _color(color: tuple[float, float, float], transmitted: float) -> str:
     return f"rgbt {vector((*color, transmitted))}" if transmitted else rgb(color)
 
 
-def _texmap(source: Texmap, transmitted: float, image: Image, boxes: Sequence[Box]) -> str:
+def _texmap(source: Texmap, transmitted: float, image: Image, boxes: Sequence[Box] | None) -> str:
     """An image map, or a choice of them where s or r have either sign.
 
     POV-Ray rounds a texel's number down where our format truncates it: below 0 that is one texel less.
@@ -100,7 +102,7 @@ def _texmap(source: Texmap, transmitted: float, image: Image, boxes: Sequence[Bo
 def _image_map(source: Texmap, transmitted: float, file: str, shifts: tuple[float, ...]) -> str:
     to_image, offset = _to_image(source)
     to_world = np.linalg.inv(to_image)
-    columns = [*to_world.T, -to_world @ (offset + [*shifts, 0])]
+    columns = [*to_world.T, -to_world @ (offset + np.array([*shifts, 0]))]
     transmit = f" transmit all {number(transmitted)}" if transmitted else ""
     matrix = ", ".join(number(value) for column in columns for value in column.tolist())
     return f'image_map {{ ppm "{file}" gamma 1.0{transmit} }} matrix <{matrix}>'
@@ -136,13 +138,15 @@ def _constant(p: Sequence[float], count: int) -> int | None:
     return None if any(p[:3]) else int(np.fmod(np.trunc(p[3] * count), count)) % count
 
 
-def _negative(p: Sequence[float], boxes: Sequence[Box]) -> set[bool]:
-    """Whether s or r is negative in these boxes: it may be both."""
+def _negative(p: Sequence[float], boxes: Sequence[Box] | None) -> set[bool]:
+    """Whether s or r is negative somewhere in these boxes, and whether it is not."""
     if not any(p[:3]):
         return {False}
-    middle = [np.dot(p[:3], np.add(low, high)) / 2 + p[3] for low, high in boxes]
-    reach = [np.dot(np.abs(p[:3]), np.subtract(high, low)) / 2 for low, high in boxes]
-    if not all(np.isfinite([*middle, *reach])):
+    if boxes is None:
         return {True, False}
-    signs = {bool(m - r < 0) for m, r in zip(middle, reach, strict=True)}
-    return signs | {bool(m + r < 0) for m, r in zip(middle, reach, strict=True)}
+    signs = set()
+    for low, high in boxes:
+        middle = np.dot(p[:3], np.add(low, high)) / 2 + p[3]
+        around = np.dot(np.abs(p[:3]), np.subtract(high, low)) / 2
+        signs |= {bool(middle - around < 0), bool(middle + around < 0)}
+    return signs

@@ -1,11 +1,11 @@
 """A whole scene in POV-Ray's language."""
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from converter.images.texture import read_texture
-from converter.scene.model import Scene, Texmap
+from converter.scene.model import Object, Scene, Texmap
 from converter.scene.needs import SceneNeeds, scene_needs
 from converter.scene.settings import Settings
 from converter.to_povray.camera import camera
@@ -13,6 +13,7 @@ from converter.to_povray.finishes import finish, transmission
 from converter.to_povray.interiors import interiors
 from converter.to_povray.lights import light
 from converter.to_povray.pigments import Image, pigment
+from converter.to_povray.scale import reach, scaled, suitable_scale
 from converter.to_povray.surfaces import object_, surface
 from converter.to_povray.text import number, rgb
 
@@ -45,95 +46,118 @@ def povray_scene(scene: Scene, settings: Settings, name: str = "scene") -> Povra
         TextureError: a texture that is used cannot be read.
 
     """
+    factor = suitable_scale(scene, scene_needs(scene, settings))
+    scene = scaled(scene, factor)
     needs = scene_needs(scene, settings)
-    omissions: list[str] = []
     images = {
         i: Image(f"{name}_pigment_{i}.ppm", read_texture(source.file), source)
         for i in needs.pigments
         if isinstance(source := scene.pigments[i], Texmap)
     }
-    omissions += [
-        f"pigment {i}: its texture has colours beyond 0..1, which are clamped" for i in images if images[i].clamped
+    omissions: list[str] = []
+    parts = [
+        _global_settings(scene, needs, settings, omissions),
+        camera(scene.camera, settings),
+        _lights(scene, needs, factor, omissions) if needs.lit else "",
+        _textures(scene, needs, settings, images, omissions),
+        _objects(scene, needs, omissions),
     ]
-    parts = [_settings(scene, needs, settings, omissions), camera(scene.camera, settings)]
-    if needs.lit:
-        parts.append(_lights(scene, needs, omissions))
-    parts.append(_textures(scene, needs, settings, images, omissions))
-    parts.append(_objects(scene, needs, omissions))
-    parts.insert(0, _heading(scene, settings, omissions))
-    textures = {image.file: image.ppm() for image in images.values()}
-    return PovrayScene("\n".join(parts), textures, tuple(omissions))
+    text = "\n".join([_heading(scene, settings, factor, omissions), *filter(None, parts)])
+    return PovrayScene(text, {image.file: image.ppm() for image in images.values()}, tuple(omissions))
 
 
-def _heading(scene: Scene, settings: Settings, omissions: list[str]) -> str:
+def draw_options(settings: Settings) -> list[str]:
+    """What `povray` has to be told so that a pixel is what it is meant to be: one ray, no gamma, 16 bits a channel.
+
+    With n x n samples the picture is n times as wide and high, and the mean of each n x n pixels is a pixel.
+    """
     n = math.isqrt(settings.samples)
-    size = f"+W{n * settings.width} +H{n * settings.height}"
-    lines = [
-        MARK + (f" from {scene.file.name!a}" if scene.file else ""),
-        f"// povray +I... {size} -A -D +FN16 File_Gamma=1",
-    ]
+    return [f"+W{n * settings.width}", f"+H{n * settings.height}", "-A", "-D", "+FP16", "File_Gamma=1"]
+
+
+def _heading(scene: Scene, settings: Settings, factor: float, omissions: list[str]) -> str:
+    n = math.isqrt(settings.samples)
+    lines = [f"{MARK} from {scene.file.name!a}" if scene.file else MARK]
+    lines.append(f"// povray +I... {' '.join(draw_options(settings))}")
     if n > 1:
         lines.append(f"// and then the mean of each {n} x {n} pixels")
+    if factor != 1:
+        lines.append(f"// Lengths are multiplied by {number(factor)}: POV-Ray misses what is nearer than 0.001.")
     if omissions:
         lines += ["// What POV-Ray draws otherwise than it is meant:", *(f"//   {omission}" for omission in omissions)]
     return "\n".join(lines) + "\n#version 3.7;\n"
 
 
-def _settings(scene: Scene, needs: SceneNeeds, settings: Settings, omissions: list[str]) -> str:
+def _global_settings(scene: Scene, needs: SceneNeeds, settings: Settings, omissions: list[str]) -> str:
     depth = needs.max_depth + 1
     if depth > MAX_TRACE_LEVEL:
-        omissions.append(f"POV-Ray follows rays for {MAX_TRACE_LEVEL - 1} bounces, not {needs.max_depth}")
-        depth = MAX_TRACE_LEVEL
+        omissions.append(f"rays are followed for {MAX_TRACE_LEVEL - 1} bounces, not {needs.max_depth}")
     return (
         f"global_settings {{\n  assumed_gamma 1.0\n  ambient_light {rgb(scene.ambient)}\n"
-        f"  max_trace_level {depth}\n  adc_bailout {number(settings.cutoff)}\n}}\n"
+        f"  max_trace_level {min(depth, MAX_TRACE_LEVEL)}\n  adc_bailout {number(settings.cutoff)}\n}}\n"
         f"background {{ {rgb(needs.background)} }}\n"
     )
 
 
-def _lights(scene: Scene, needs: SceneNeeds, omissions: list[str]) -> str:
-    eye = scene.camera.eye
-    corners = [c for box, bounded in zip(needs.boxes, needs.bounded, strict=True) if bounded for c in box]
-    size = max(math.dist(eye, p) for p in (scene.camera.look_at, *(s.position for s in scene.lights), *corners))
+def _lights(scene: Scene, needs: SceneNeeds, factor: float, omissions: list[str]) -> str:
+    size = max(reach(scene, needs), *(math.dist(scene.camera.eye, source.position) for source in scene.lights))
     text = ""
     for i, source in enumerate(scene.lights, start=1):
         sources, error = light(source, size)
         text += sources
         if error:
             a, b, c = source.attenuation
-            law = f"1 / ({a:g} + {b:g} d + {c:g} d^2)"
-            omissions.append(f"light {i}: {law} is approached by a sum of fades that is off by up to {error:.1g}")
+            law = f"1 / ({a:g} + {b * factor:g} d + {c * factor**2:g} d^2)"
+            place = _place("light", i, scene.light_lines, i - 1)
+            omissions.append(f"{place}: {law} is approached by five lights, whose sum is off by up to {error:.1g}")
     return text
 
 
 def _textures(
-    scene: Scene, needs: SceneNeeds, settings: Settings, images: dict[int, Image], omissions: list[str]
+    scene: Scene, needs: SceneNeeds, settings: Settings, images: Mapping[int, Image], omissions: list[str]
 ) -> str:
-    text = ""
+    for i, image in images.items():
+        if image.clamped:
+            place = _place("pigment", i, scene.pigment_lines, i)
+            omissions.append(f"{place}: its texture's colours beyond 0..1 are clamped")
     for i in needs.finishes:
         source = scene.finishes[i]
-        if source.ks > 0 and source.alpha == 0:
-            line = f" (line {scene.finish_lines[i]})" if i < len(scene.finish_lines) else ""
-            omissions.append(f"finish {i}{line}: a highlight with alpha 0 is none")
+        place = _place("finish", i, scene.finish_lines, i)
+        if needs.glossy and source.ks > 0 and source.alpha == 0:
+            how = "ends at a right angle" if settings.specular == "phong" else "is left out"
+            omissions.append(f"{place}: its highlight, with alpha 0, {how}")
+        transmitted, _ = transmission(source)
+        if needs.refracts and settings.cutoff > 0 and not math.isclose(transmitted, source.kt, rel_tol=1e-4):
+            than = f"a ray through it weighs kt / (kr + kt) = {transmitted:.3g}, not kt = {source.kt:g}"
+            omissions.append(f"{place}: where --cutoff drops rays, {than}")
+    text = ""
     for i, j in sorted({(o.finish, o.pigment) for o in scene.objects}):
-        boxes = [
-            needs.boxes[k] if needs.bounded[k] else ((-math.inf,) * 3, (math.inf,) * 3)
-            for k, o in enumerate(scene.objects)
-            if (o.finish, o.pigment) == (i, j)
-        ]
+        users = [k for k, o in enumerate(scene.objects) if (o.finish, o.pigment) == (i, j)]
+        boxes = [needs.boxes[k] for k in users] if all(needs.bounded[k] for k in users) else None
         colors = pigment(scene.pigments[j], transmission(scene.finishes[i])[0], images.get(j), boxes)
-        text += f"#declare Finish_{i}_Pigment_{j} = texture {{\n  {colors}\n  {finish(scene.finishes[i], settings)}\n}}\n"
+        text += f"#declare {_texture(i, j)} = texture {{\n  {colors}\n  {finish(scene.finishes[i], settings)}\n}}\n"
     return text
 
 
 def _objects(scene: Scene, needs: SceneNeeds, omissions: list[str]) -> str:
-    inner, overlaps = interiors(scene, needs) if needs.refracts else ({}, [])
-    for pair in overlaps:
-        (i, first), (j, second) = ((f"object {k}", scene.objects[k].line) for k in pair)
-        lines = f" (lines {first} and {second})" if first and second else ""
-        omissions.append(f"{i} and {j}{lines} are transparent and overlap: POV-Ray refracts rays by its own rules there")
-    text = ""
-    for i, o in enumerate(scene.objects):
-        texture = f"Finish_{o.finish}_Pigment_{o.pigment}"
-        text += object_(f"Object_{i}", surface(o.shape, needs, i), texture, inner.get(i), needs.lit)
-    return text
+    inner, overlaps = interiors(scene, needs)
+    lines = [o.line for o in scene.objects]
+    for i, j in overlaps if needs.refracts else ():
+        pair = f"{_place('object', i, lines, i)} and {_place('object', j, lines, j)}"
+        omissions.append(f"{pair} are transparent and overlap, so that rays are refracted by other ratios there")
+
+    def block(i: int, o: Object) -> str:
+        texture = _texture(o.finish, o.pigment)
+        return object_(f"Object_{i}", surface(o.shape, needs, i), texture, inner.get(i), needs.lit)
+
+    return "".join(block(i, o) for i, o in enumerate(scene.objects))
+
+
+def _texture(finish: int, pigment: int) -> str:
+    return f"Finish_{finish}_Pigment_{pigment}"
+
+
+def _place(kind: str, index: int, lines: Sequence[int], at: int) -> str:
+    """E.g. `light 2 (line 7)`; a line 0 is not known."""
+    line = lines[at] if at < len(lines) else 0
+    return f"{kind} {index}" + (f" (line {line})" if line else "")

@@ -1,0 +1,65 @@
+"""The same scene in other units, for POV-Ray's tolerances are absolute."""
+
+import math
+from dataclasses import replace
+
+import numpy as np
+
+from converter.scene.model import Checker, Light, Object, Pigment, Polyhedron, Scene, Solid, Sphere, Texmap, Vector
+from converter.scene.needs import SceneNeeds
+
+
+def scaled(scene: Scene, factor: float) -> Scene:
+    """`scene` with all lengths multiplied by `factor`, which gives the same picture."""
+
+    def times(v: Vector) -> Vector:
+        x, y, z = v
+        return (factor * x, factor * y, factor * z)
+
+    def light(source: Light) -> Light:
+        a, b, c = source.attenuation
+        return replace(source, position=times(source.position), attenuation=(a, b / factor, c / factor**2))
+
+    def pigment(source: Pigment) -> Pigment:
+        match source:
+            case Solid():
+                return source
+            case Checker():
+                return replace(source, size=factor * source.size)
+            case Texmap(_, (a, b, c, d), (e, f, g, h)):
+                p0, p1 = (a / factor, b / factor, c / factor, d), (e / factor, f / factor, g / factor, h)
+                return replace(source, p0=p0, p1=p1)
+
+    def object_(source: Object) -> Object:
+        match source.shape:
+            case Sphere(center, radius):
+                return replace(source, shape=Sphere(times(center), factor * radius))
+            case Polyhedron(planes):
+                return replace(source, shape=Polyhedron(tuple((a, b, c, factor * d) for a, b, c, d in planes)))
+
+    return replace(
+        scene,
+        camera=replace(scene.camera, eye=times(scene.camera.eye), look_at=times(scene.camera.look_at)),
+        lights=tuple(map(light, scene.lights)),
+        pigments=tuple(map(pigment, scene.pigments)),
+        objects=tuple(map(object_, scene.objects)),
+    )
+
+
+def suitable_scale(scene: Scene, needs: SceneNeeds) -> float:
+    """A power of two by which to multiply the scene's lengths, so that no digit changes.
+
+    POV-Ray takes what is nearer than 0.001 along a ray for the surface that the ray starts on, and sees nothing farther
+    than 1e7. Where nothing bounded is around the eye, rays may go on to a horizon, which needs room.
+    """
+    eye = np.array(scene.camera.eye)
+    enclosed = any(
+        bounded and bool(np.all(eye > low) and np.all(eye < high))
+        for bounded, (low, high) in zip(needs.bounded, needs.boxes, strict=True)
+    )
+    return math.ldexp(1, round(math.log2((2**15 if enclosed else 2**12) / reach(scene, needs))))
+
+
+def reach(scene: Scene, needs: SceneNeeds) -> float:
+    """Distance from the eye to the farthest corner of a body, and to what the camera looks at."""
+    return max(math.dist(scene.camera.eye, p) for p in (scene.camera.look_at, *(p for box in needs.boxes for p in box)))
