@@ -8,7 +8,6 @@ machine, their ratios much less. POV-Ray joins where it is installed.
 
 import math
 import os
-import re
 import shutil
 import statistics
 import subprocess
@@ -24,12 +23,12 @@ from converter.compare.metrics import compare_pixels
 from converter.renderers.base import Renderer
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
+from converter.renderers.povray import PovrayRenderer
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
 
 ROOT = Path(__file__).resolve().parent.parent
 FIGURE1 = ROOT / "scenes" / "figure1.in"
-POV = ROOT / "benchmarks" / "figure1.pov"
 PROGRAMS = Path(sys.executable).parent
 RUNS = 11
 
@@ -75,7 +74,7 @@ def speed() -> None:
             "whitted render (process)": _process("whitted", "render", FIGURE1, Path(folder, "b.ppm"), "--quiet"),
         }
         if shutil.which("povray"):
-            subjects["POV-Ray (trace time)"] = _povray
+            subjects["POV-Ray (trace time)"] = seconds(PovrayRenderer())
         times = _interleaved(subjects)
     print(f"{'':<26}{'median':>9}{'least':>9}{'faster than POV-Ray, medians':>32}")
     povray = statistics.median(times.get("POV-Ray (trace time)", [math.nan]))
@@ -118,17 +117,6 @@ def _process(program: str, *arguments: str | Path) -> Callable[[], float]:
         return time.perf_counter() - started
 
     return run
-
-
-def _povray() -> float:
-    threads = len(os.sched_getaffinity(0))
-    with tempfile.TemporaryDirectory() as folder:
-        options = ["+W800", "+H600", "-A", "-D", f"+WT{threads}", f"+O{folder}/pov.png"]
-        result = subprocess.run(["povray", *options, f"+I{POV}"], capture_output=True, text=True, check=True)
-    match = re.search(r"Trace Time:.*\(([\d.]+) seconds\)", result.stderr)
-    if match is None:
-        raise SystemExit("POV-Ray printed no trace time")
-    return float(match[1])
 
 
 if __name__ == "__main__":

@@ -6,14 +6,17 @@ import shutil
 import subprocess
 import tempfile
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 
 from converter.renderers.base import Interrupted, Progress, RendererUnavailable, Rendering
-from converter.scene.model import Scene
+from converter.scene.model import Color, Scene
 from converter.scene.settings import Settings
 
 PROGRAM = "povray"
+BRIGHTEST = 8
+"""A power of two. POV-Ray's files of 16 bits end at 1: it draws in light that is dimmed by this, so that they reach
+this far, in steps of an 8000th."""
 _TRACE_TIME = re.compile(r"Trace Time:.*?\(([\d.]+) seconds\)")
 _COMPLAINT = re.compile(r"((?:Parse|Fatal|Possible Parse) Error|Problem):?\s", re.IGNORECASE)
 
@@ -26,7 +29,7 @@ class PovrayError(RuntimeError):
 class PovrayRenderer:
     """Draws with the program `povray`, version 3.7, what `whitted convert SCENE FILE.pov` writes.
 
-    Its pictures have 16 bits a channel, and are clamped to 0..1.
+    Colours come in steps of an 8000th, and those beyond 0..8 are clamped before samples are averaged.
     """
 
     @property
@@ -38,7 +41,8 @@ class PovrayRenderer:
         """Draw `scene`.
 
         `seconds["render"]` is POV-Ray's own trace time, `"start"` the rest of its process, `"build"` the conversion.
-        `statistics["omissions"]` is what it draws otherwise than the scene means it.
+        `statistics["clamped"]` says whether a colour was clamped, `["omissions"]` what is drawn otherwise than the
+        scene means it.
 
         Raises:
             RendererUnavailable: POV-Ray is not installed.
@@ -65,7 +69,7 @@ class PovrayRenderer:
         seconds = {"build": 0.0, "start": 0.0, "render": 0.0}
         n = math.isqrt(settings.samples)
         with tempfile.TemporaryDirectory() as folder:
-            exported, _ = export_povray(scene, settings, Path(folder, "scene.pov"))
+            exported, _ = export_povray(*_dimmed(scene, settings), Path(folder, "scene.pov"))
             seconds["build"] = time.perf_counter() - started
             options = [*draw_options(settings), f"+WT{settings.threads or available_cores()}"]
             began = time.perf_counter()
@@ -76,11 +80,23 @@ class PovrayRenderer:
             seconds["start"] = time.perf_counter() - began - seconds["render"]
             fine = np.asarray(read_texture(Path(folder, "picture.ppm")).texels)
         cells = fine.reshape(settings.height, n, settings.width, n, 3)
-        pixels[:] = cells.mean(axis=(1, 3), dtype=np.float64)
+        pixels[:] = BRIGHTEST * cells.mean(axis=(1, 3), dtype=np.float64)
         if progress is not None:
             progress(1.0)
-        statistics = {"clamped": True, "omissions": exported.omissions}
+        statistics = {"clamped": bool((fine >= 1).any()), "omissions": exported.omissions}
         return Rendering(pixels, settings.width, settings.height, seconds, statistics)
+
+
+def _dimmed(scene: Scene, settings: Settings) -> tuple[Scene, Settings]:
+    """All light divided by `BRIGHTEST`, which no digit is lost by."""
+
+    def dim(color: Color) -> Color:
+        red, green, blue = color
+        return (red / BRIGHTEST, green / BRIGHTEST, blue / BRIGHTEST)
+
+    lights = tuple(replace(light, color=dim(light.color)) for light in scene.lights)
+    background = None if settings.background is None else dim(settings.background)
+    return replace(scene, ambient=dim(scene.ambient), lights=lights), replace(settings, background=background)
 
 
 def _run(command: list[str], folder: str) -> float:

@@ -28,7 +28,7 @@ class Fade(NamedTuple):
 
 
 def light(source: Light, size: float) -> tuple[str, float]:
-    """Light sources that together make a light, and by how much, at most, the brightest channel is off.
+    """Light sources that together make a light, and by what share of its colour, at most, they are off.
 
     Args:
         source: the light.
@@ -41,7 +41,7 @@ def light(source: Light, size: float) -> tuple[str, float]:
         fading = f" fade_power {power:g} fade_distance {distance!r}" if power else ""
         color = rgb(weight * channel for channel in source.color)
         text += f"light_source {{ {vector(source.position)} {color}{fading} }}\n"
-    return text, error * max(map(abs, source.color))
+    return text, error
 
 
 def fades(attenuation: tuple[float, float, float], size: float) -> tuple[list[Fade], float]:
@@ -75,6 +75,8 @@ def _approach(a: float, b: float, c: float, size: float) -> tuple[list[Fade], fl
     d = np.concatenate([np.linspace(0, min(8 * unit, size), 200), np.geomspace(unit / 8, max(size, 8 * unit), 200)])
     divisor = a + b * d + c * d**2
     d, divisor = d[divisor > 0], divisor[divisor > 0]
+    if not d.size:
+        return [], math.inf
     basis = np.stack([2 / (1 + (d / (unit * distance)) ** power) for power, distance in _TERMS], axis=1)
     weights = np.linalg.lstsq(basis, 1 / divisor, rcond=None)[0]
     error = float(np.abs(basis @ weights - 1 / divisor).max())

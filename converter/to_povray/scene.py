@@ -109,7 +109,7 @@ def _lights(scene: Scene, needs: SceneNeeds, factor: float, omissions: list[str]
             a, b, c = source.attenuation
             law = f"1 / ({a:g} + {b * factor:g} d + {c * factor**2:g} d^2)"
             place = _place("light", i, scene.light_lines, i - 1)
-            omissions.append(f"{place}: {law} is approached by five lights, whose sum is off by up to {error:.1g}")
+            omissions.append(f"{place}: {law} is approached by five lights, off by up to {error:.1g} of its colour")
     return text
 
 
