@@ -13,7 +13,7 @@ import numpy as np
 from converter.scene.model import Light
 from converter.to_povray.text import rgb, vector
 
-CLOSEST = 1e-6
+CLOSEST = 1e-9
 """A light that grows without end is drawn as one that grows up to this distance, in units of the scene's size."""
 _TERMS = ((1.0, 0.5), (1.0, 1.0), (2.0, 0.5), (2.0, 1.0), (2.0, 2.0))
 """Powers, and distances in units of sqrt(a/c), with which a polynomial that has no real roots is approached."""
