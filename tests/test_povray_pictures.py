@@ -51,8 +51,10 @@ def lit(scene: Scene, attenuation: tuple[float, float, float], brightness: float
 
 @pytest.fixture
 def plain(small_scene: Scene) -> Scene:
-    """The small scene in constant light."""
-    return lit(small_scene, (1, 0, 0))
+    """The small scene in constant light, on a floor with bounds."""
+    floor = ((0, 1, 0, 0.01), (0, -1, 0, -1), (1, 0, 0, -40), (-1, 0, 0, -40), (0, 0, 1, -40), (0, 0, -1, -40))
+    objects = (replace(small_scene.objects[0], shape=Polyhedron(floor)), *small_scene.objects[1:])
+    return lit(replace(small_scene, objects=objects), (1, 0, 0))
 
 
 @needs_povray
@@ -92,28 +94,25 @@ def test_settings(plain: Scene, settings: Settings) -> None:
         ((0.5, 0.05, 0.003), 1, False),
     ],
 )
-def test_attenuation(
-    small_scene: Scene, attenuation: tuple[float, float, float], brightness: float, exact: bool
-) -> None:
-    matte = tuple(replace(finish, kt=0) for finish in small_scene.finishes)
-    scene = replace(lit(small_scene, attenuation, brightness), finishes=matte)
+def test_attenuation(plain: Scene, attenuation: tuple[float, float, float], brightness: float, exact: bool) -> None:
+    matte = tuple(replace(finish, kt=0) for finish in plain.finishes)
+    scene = replace(lit(plain, attenuation, brightness), finishes=matte)
     told = agree(scene, Settings(width=80, height=60), rms=1e-4 if exact else 1e-3)
     assert [text.split(":")[0] for text in told] == ([] if exact else ["light 1", "light 2"])
 
 
 @needs_povray
 @pytest.mark.parametrize(
-    ("p0", "p1"),
+    ("p0", "p1", "maxval"),
     [
-        ((0.7, 0.1, 0.0, 0.2), (0.0, 0.9, 0.3, 0.1)),
-        ((-0.21, 0.0, 0.0, -0.3), (0.0, 0.0, 0.17, 0.0)),
-        ((0.0, 0.0, 0.31, 0.05), (0.0, 0.0, 0.0, -0.4)),
-        ((0.0, 0.0, 0.0, 5.4), (0.13, 0.11, 0.0, -3.0)),
-        ((0.0, 0.0, 0.0, 0.4), (0.0, 0.0, 0.0, -0.6)),
-        ((0.2, 0.1, 0.1, 0.2), (0.4, 0.2, 0.2, 0.1)),
+        ((0.7, 0.1, 0.0, 0.2), (0.0, 0.9, 0.3, 0.1), 255),
+        ((-0.21, 0.0, 0.0, -0.3), (0.0, 0.0, 0.17, 0.0), 65535),
+        ((0.0, 0.0, 0.31, 0.05), (0.0, 0.0, 0.0, -0.4), 255),
+        ((0.0, 0.0, 0.0, 5.4), (0.13, 0.11, 0.0, -3.0), 65535),
+        ((0.0, 0.0, 0.0, 0.4), (0.0, 0.0, 0.0, -0.6), 255),
+        ((0.2, 0.1, 0.1, 0.2), (0.4, 0.2, 0.2, 0.1), 65535),
     ],
 )
-@pytest.mark.parametrize("maxval", [255, 65535])
 def test_textures(
     plain: Scene,
     tmp_path: Path,

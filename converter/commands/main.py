@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 COMMANDS = {
     "render": "draw a scene into an image file",
-    "convert": "write a scene as files that Mitsuba 3 loads",
+    "convert": "write a scene as files that Mitsuba 3 or POV-Ray loads",
     "compare": "draw a scene by two methods, or take two images, and tell the differences",
     "inspect": "say what a scene file holds and what it needs",
     "pixel": "show the rays behind one pixel, by two methods",

@@ -8,6 +8,9 @@ import numpy as np
 from converter.scene.model import Checker, Light, Object, Pigment, Polyhedron, Scene, Solid, Sphere, Texmap, Vector
 from converter.scene.needs import SceneNeeds
 
+NEAREST, FARTHEST = 1e-3, 1e7
+"""Distances between which POV-Ray sees everything."""
+
 
 def scaled(scene: Scene, factor: float) -> Scene:
     """`scene` with all lengths multiplied by `factor`, which gives the same picture."""
@@ -49,15 +52,20 @@ def scaled(scene: Scene, factor: float) -> Scene:
 def suitable_scale(scene: Scene, needs: SceneNeeds) -> float:
     """A power of two by which to multiply the scene's lengths, so that no digit changes.
 
-    POV-Ray takes what is nearer than 0.001 along a ray for the surface that the ray starts on, and sees nothing farther
-    than 1e7. Where nothing bounded is around the eye, rays may go on to a horizon, which needs room.
+    POV-Ray takes what is nearer than `NEAREST` along a ray for the surface that the ray starts on, and sees nothing
+    that is farther than `FARTHEST`: a horizon needs room.
     """
+    return math.ldexp(1, round(math.log2((2**12 if has_horizon(scene, needs) else 2**15) / reach(scene, needs))))
+
+
+def has_horizon(scene: Scene, needs: SceneNeeds) -> bool:
+    """Whether rays may meet something without bounds at any distance: nothing that has bounds is around the eye."""
     eye = np.array(scene.camera.eye)
     enclosed = any(
         bounded and bool(np.all(eye > low) and np.all(eye < high))
         for bounded, (low, high) in zip(needs.bounded, needs.boxes, strict=True)
     )
-    return math.ldexp(1, round(math.log2((2**15 if enclosed else 2**12) / reach(scene, needs))))
+    return not enclosed and not all(needs.bounded)
 
 
 def reach(scene: Scene, needs: SceneNeeds) -> float:

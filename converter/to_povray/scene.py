@@ -13,7 +13,7 @@ from converter.to_povray.finishes import finish, transmission
 from converter.to_povray.interiors import interiors
 from converter.to_povray.lights import light
 from converter.to_povray.pigments import Image, pigment
-from converter.to_povray.scale import reach, scaled, suitable_scale
+from converter.to_povray.scale import FARTHEST, NEAREST, has_horizon, reach, scaled, suitable_scale
 from converter.to_povray.surfaces import object_, surface
 from converter.to_povray.text import number, rgb
 
@@ -55,6 +55,8 @@ def povray_scene(scene: Scene, settings: Settings, name: str = "scene") -> Povra
         if isinstance(source := scene.pigments[i], Texmap)
     }
     omissions: list[str] = []
+    if has_horizon(scene, needs):
+        omissions.append(f"nothing is seen that is farther away than {FARTHEST / factor:.3g}")
     parts = [
         _global_settings(scene, needs, settings, omissions),
         camera(scene.camera, settings),
@@ -82,7 +84,9 @@ def _heading(scene: Scene, settings: Settings, factor: float, omissions: list[st
     if n > 1:
         lines.append(f"// and then the mean of each {n} x {n} pixels")
     if factor != 1:
-        lines.append(f"// Lengths are multiplied by {number(factor)}: POV-Ray misses what is nearer than 0.001.")
+        lines.append(
+            f"// Lengths are multiplied by {number(factor)}: POV-Ray misses what is nearer than {number(NEAREST)}."
+        )
     if omissions:
         lines += ["// What POV-Ray draws otherwise than it is meant:", *(f"//   {omission}" for omission in omissions)]
     return "\n".join(lines) + "\n#version 3.7;\n"
