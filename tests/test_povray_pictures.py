@@ -1,8 +1,8 @@
 """POV-Ray draws what `whitted convert` writes, and its pictures are the native tracer's."""
 
 import os
+import shutil
 import signal
-import subprocess
 import sys
 import threading
 from dataclasses import replace
@@ -23,8 +23,7 @@ from converter.to_povray.scale import scaled
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 needs_povray = pytest.mark.skipif(
-    subprocess.run(["sh", "-c", "command -v povray"], capture_output=True).returncode != 0,
-    reason="POV-Ray is not installed (apt install povray)",
+    shutil.which(povray.PROGRAM) is None, reason="POV-Ray is not installed (Debian, Ubuntu: apt install povray)"
 )
 BOX = ((1, 0, 0, -1), (-1, 0, 0, -1), (0, 1, 0, -1), (0, -1, 0, -1), (0, 0, 1, -1), (0, 0, -1, -1))
 
