@@ -59,7 +59,7 @@ class Method:
 
     def missing(self) -> str | None:
         """Why the method cannot run on this machine, as far as can be told without running it; None if it can."""
-        return _not_yet(self) or _MISSING[self.family](self)
+        return _MISSING[self.family](self)
 
     def unfit(self, scene: Scene) -> str | None:
         """Why the method is not for `scene`; None if it is."""
@@ -101,10 +101,9 @@ def _mitsuba(**options: Any) -> Renderer:
 
 
 def _povray(**options: Any) -> Renderer:
-    from importlib import import_module
+    from converter.renderers.povray import PovrayRenderer
 
-    renderer: Renderer = import_module("converter.renderers.povray").PovrayRenderer(**options)
-    return renderer
+    return PovrayRenderer(**options)
 
 
 def _native_missing(method: Method) -> str | None:
@@ -144,30 +143,6 @@ _MISSING: Mapping[Family, Callable[[Method], str | None]] = {
     "mitsuba": _mitsuba_missing,
     "povray": _povray_missing,
 }
-
-
-# TEMPORARY, until the renderers have every option that the table names: delete this, and its call in `missing`.
-def _not_yet(method: Method) -> str | None:
-    """Whether a renderer lacks an option that the table gives it."""
-    import dataclasses
-    from importlib.util import find_spec
-    from typing import get_args, get_type_hints
-
-    if find_spec(f"converter.renderers.{method.family}") is None:
-        return "not in this version"
-    if method.family == "povray":
-        return None
-    from converter.renderers.mitsuba import MitsubaRenderer
-    from converter.renderers.native import NativeRenderer
-
-    renderer = NativeRenderer if method.family == "native" else MitsubaRenderer
-    known = {f.name for f in dataclasses.fields(renderer)}
-    hints = get_type_hints(renderer)
-    for option, value in method.options.items():
-        values = get_args(hints.get(option))
-        if option not in known or (values and isinstance(value, str) and value not in values):
-            return "not in this version"
-    return None
 
 
 # ---------------------------------------------------------------------------------------------------------- the table
@@ -230,8 +205,8 @@ def _tessellated_methods() -> Iterator[Method]:
             f"mitsuba-spheres-{share}",
             "mitsuba",
             "Mitsuba, spheres as meshes",
-            f"at most {share} radii off the sphere: to see what tessellation costs",
-            {"sphere_tolerance": float(share)},
+            f"{share} radii off the sphere at most, else as mitsuba-offset: to see what tessellation costs",
+            {"intersections": "offset", "sphere_tolerance": float(share)},
         )
 
 
