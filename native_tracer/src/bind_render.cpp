@@ -28,7 +28,7 @@ using namespace whitted;
 namespace {
 
 RenderSettings settings_of(int width, int height, int samples, bool corner, bool blinn, double cutoff, int max_depth,
-                           const std::string& precision) {
+                           const std::string& precision, const std::string& search) {
     if (width <= 0 || height <= 0) {
         throw std::invalid_argument("a picture needs a width and a height above 0");
     }
@@ -42,7 +42,7 @@ RenderSettings settings_of(int width, int height, int samples, bool corner, bool
     if (max_depth < 0) {
         throw std::invalid_argument("max_depth must not be negative");
     }
-    RenderSettings settings{width, height, grid, corner, blinn, cutoff, max_depth, Precision::normal};
+    RenderSettings settings{width, height, grid, corner, blinn, cutoff, max_depth};
     if (precision == "float") {
         settings.precision = Precision::single;
     } else if (precision == "long double") {
@@ -50,14 +50,21 @@ RenderSettings settings_of(int width, int height, int samples, bool corner, bool
     } else if (precision != "double") {
         throw std::invalid_argument("precision must be 'float', 'double' or 'long double'");
     }
+    if (search == "brute") {
+        settings.search = Search::brute;
+    } else if (search == "bvh") {
+        settings.search = Search::bvh;
+    } else if (search != "auto") {
+        throw std::invalid_argument("search must be 'auto', 'brute' or 'bvh'");
+    }
     return settings;
 }
 
 void render_image(const SceneDescription& scene, Image& image, int samples, bool corner, bool blinn, double cutoff,
-                  int max_depth, const std::string& precision, int threads, nb::object progress,
-                  const std::string& instructions) {
+                  int max_depth, const std::string& precision, const std::string& search, int threads,
+                  nb::object progress, const std::string& instructions) {
     const RenderSettings settings =
-        settings_of(image.width(), image.height(), samples, corner, blinn, cutoff, max_depth, precision);
+        settings_of(image.width(), image.height(), samples, corner, blinn, cutoff, max_depth, precision, search);
     if (!progress.is_none() && !PyCallable_Check(progress.ptr())) {
         throw nb::type_error("progress must be callable");
     }
@@ -131,8 +138,10 @@ nb::dict dropped_of(const RayRecord& ray) {
 }
 
 nb::dict trace_pixel(const SceneDescription& scene, int width, int height, int x, int y, int samples, bool corner,
-                     bool blinn, double cutoff, int max_depth, const std::string& precision) {
-    const RenderSettings settings = settings_of(width, height, samples, corner, blinn, cutoff, max_depth, precision);
+                     bool blinn, double cutoff, int max_depth, const std::string& precision,
+                     const std::string& search) {
+    const RenderSettings settings =
+        settings_of(width, height, samples, corner, blinn, cutoff, max_depth, precision, search);
     if (x < 0 || x >= width || y < 0 || y >= height) {
         throw nb::index_error("the pixel lies outside the picture");
     }
@@ -238,18 +247,19 @@ void bind_render(nb::module_& module) {
                 result["shadow"] = image.counts.shadow;
                 result["deepest"] = image.counts.deepest;
                 result["threads"] = image.threads;
+                result["search"] = image.by_tree ? "bvh" : "brute";
                 return result;
             },
-            "Rays of the last rendering by kind, its deepest bounce and its threads.");
+            "Rays of the last rendering by kind, its deepest bounce, its threads, and how it searched.");
 
     module.def("render", &render_image, "scene"_a, "image"_a, nb::kw_only(), "samples"_a = 1, "corner"_a = true,
-               "blinn"_a = false, "cutoff"_a, "max_depth"_a, "precision"_a = "double", "threads"_a = 0,
-               "progress"_a = nb::none(), "instructions"_a = "",
+               "blinn"_a = false, "cutoff"_a, "max_depth"_a, "precision"_a = "double", "search"_a = "auto",
+               "threads"_a = 0, "progress"_a = nb::none(), "instructions"_a = "",
                "Draw `scene` into `image`. `progress` is called about 20 times a second with the finished share; what\n"
                "it raises, and Ctrl-C, stop the rendering, and what is finished stays in the image.");
     module.def("trace_pixel", &trace_pixel, "scene"_a, "width"_a, "height"_a, "x"_a, "y"_a, nb::kw_only(),
                "samples"_a = 1, "corner"_a = true, "blinn"_a = false, "cutoff"_a, "max_depth"_a,
-               "precision"_a = "double", "The rays of one pixel as nested dictionaries.");
+               "precision"_a = "double", "search"_a = "auto", "The rays of one pixel as nested dictionaries.");
     module.def("quantize", &quantized, "pixels"_a,
                "8-bit RGB of a float32 buffer: round(255 c), c clamped to 0..1, a NaN black.");
 }

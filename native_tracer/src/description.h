@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <variant>
 #include <vector>
@@ -77,6 +78,12 @@ struct SceneDescription {
 
 enum class Precision { single, normal, extended };  // float, double, long double
 
+// How the objects are searched: one by one, or by a tree over their boxes; by default whichever is faster.
+enum class Search { automatic, brute, bvh };
+
+// From so many objects on a tree is faster.
+inline constexpr std::size_t least_objects_of_a_tree = 32;
+
 struct RenderSettings {
     int width, height;
     int grid = 1;  // grid x grid rays a pixel
@@ -85,6 +92,7 @@ struct RenderSettings {
     double cutoff = 0;
     int max_depth = 0;
     Precision precision = Precision::normal;
+    Search search = Search::automatic;
 };
 
 // ---- What comes out besides the picture ---------------------------------------------------------------------------

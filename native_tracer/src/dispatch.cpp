@@ -9,7 +9,7 @@ namespace whitted {
 
 namespace {
 
-using Make = Kernel* (*)(const SceneDescription&, const RenderSettings&);
+using Make = Kernel* (*)(const SceneDescription&, const RenderSettings&, const SearchPlan&);
 
 struct Variant {
     std::string_view name;
@@ -34,7 +34,8 @@ std::unique_ptr<Kernel> make_kernel(const SceneDescription& scene, const RenderS
     };
     for (const Variant& variant : variants) {
         if (variant.available && (instructions.empty() || instructions == variant.name)) {
-            return std::unique_ptr<Kernel>(variant.make(scene, settings));
+            return std::unique_ptr<Kernel>(
+                variant.make(scene, settings, plan_search(scene, settings.search, settings.precision)));
         }
     }
     throw std::invalid_argument("this processor or this build has no '" + std::string(instructions) + "' instructions");

@@ -84,8 +84,8 @@ class PrimaryRays {
 template <typename Real>
 class RealKernel final : public Kernel {
  public:
-    RealKernel(const SceneDescription& scene, const RenderSettings& settings)
-        : scene_(scene), camera_(scene.camera, settings.width, settings.height), settings_(settings) {}
+    RealKernel(const SceneDescription& scene, const RenderSettings& settings, const SearchPlan& plan)
+        : scene_(scene, plan), camera_(scene.camera, settings.width, settings.height), settings_(settings) {}
 
     bool trace_tile(const Tile& tile, float* picture, RayCounts& counts, const std::atomic<bool>& stop) const override {
         Unobserved unobserved;
@@ -118,6 +118,8 @@ class RealKernel final : public Kernel {
         store(sum, settings_.grid * settings_.grid, color);
     }
 
+    bool uses_tree() const override { return !scene_.tree.empty(); }
+
  private:
     template <typename Sum>
     static void store(const Color<Sum>& sum, int count, float* pixel) {
@@ -132,16 +134,16 @@ class RealKernel final : public Kernel {
     const RenderSettings settings_;
 };
 
-Kernel* make_kernel(const SceneDescription& scene, const RenderSettings& settings) {
+Kernel* make_kernel(const SceneDescription& scene, const RenderSettings& settings, const SearchPlan& plan) {
     switch (settings.precision) {
         case Precision::single:
-            return new RealKernel<float>(scene, settings);
+            return new RealKernel<float>(scene, settings, plan);
         case Precision::extended:
-            return new RealKernel<long double>(scene, settings);
+            return new RealKernel<long double>(scene, settings, plan);
         case Precision::normal:
             break;
     }
-    return new RealKernel<double>(scene, settings);
+    return new RealKernel<double>(scene, settings, plan);
 }
 
 }  // namespace whitted::WHITTED_ISA

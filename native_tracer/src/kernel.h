@@ -8,6 +8,7 @@
 
 #include "description.h"
 #include "ray_tree.h"
+#include "search.h"
 
 namespace whitted {
 
@@ -29,6 +30,9 @@ class Kernel {
 
     // Traces one pixel, with its rays put into `tree` and its colour, as trace_tile would leave it, into `color`.
     virtual void trace_pixel(int column, int row, float* color, RayTree& tree) const = 0;
+
+    // Whether the objects are searched by a tree.
+    virtual bool uses_tree() const = 0;
 };
 
 // `instructions` is "baseline", "avx2" or "avx512"; empty: the best that this processor has. Throws
@@ -39,13 +43,13 @@ std::unique_ptr<Kernel> make_kernel(const SceneDescription& scene, const RenderS
 
 // Each is kernel.cpp, compiled for one instruction set.
 namespace baseline {
-Kernel* make_kernel(const SceneDescription& scene, const RenderSettings& settings);
+Kernel* make_kernel(const SceneDescription& scene, const RenderSettings& settings, const SearchPlan& plan);
 }
 namespace avx2 {
-Kernel* make_kernel(const SceneDescription& scene, const RenderSettings& settings);
+Kernel* make_kernel(const SceneDescription& scene, const RenderSettings& settings, const SearchPlan& plan);
 }
 namespace avx512 {
-Kernel* make_kernel(const SceneDescription& scene, const RenderSettings& settings);
+Kernel* make_kernel(const SceneDescription& scene, const RenderSettings& settings, const SearchPlan& plan);
 }
 
 }  // namespace whitted

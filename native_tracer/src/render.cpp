@@ -47,6 +47,7 @@ class Drawing {
         }
         image_.counts = {};
         image_.threads = std::min(threads, most);
+        image_.by_tree = kernel_.uses_tree();
         std::vector<std::thread> workers;
         try {
             for (int i = 0; i < image_.threads; ++i) {

@@ -22,6 +22,7 @@ class Image {
 
     RayCounts counts;  // of the last rendering into it
     int threads = 0;
+    bool by_tree = false;  // its objects were searched by a tree
 
  private:
     struct Free {

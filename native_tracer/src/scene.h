@@ -12,7 +12,9 @@
 #include "camera.h"
 #include "description.h"
 #include "pigment.h"
+#include "search.h"
 #include "surface.h"
+#include "tree.h"
 
 namespace whitted::WHITTED_ISA {
 
@@ -77,16 +79,19 @@ struct Scene {
     std::vector<Pigment<Real>> pigments;
     std::vector<Object<Real>> objects;
     std::vector<Patch<Real>> patches;
+    // Those outside the tree come first, the rest in the order of its leaves.
     std::vector<Sphere<Real>> spheres;
     std::vector<Polyhedron<Real>> polyhedra;
+    Tree<Real> tree;
+    int spheres_apart, polyhedra_apart;
 
-    explicit Scene(const SceneDescription& description);
+    Scene(const SceneDescription& description, const SearchPlan& plan);
     Scene(const Scene&) = delete;  // objects point to pigments
 
     // The nearest hit of each ray; of objects at the same distance, the first of the file.
     Hits<Real> nearest_hit(const Rays<Real>& rays) const {
         Hits<Real> hits;
-        for_each_crossing(rays, [&](Indices<Real> object, const Crossing<Real>& crossing) {
+        for_each_crossing(rays, hits.t, [&](Indices<Real> object, const Crossing<Real>& crossing) {
             const Mask<Real> nearer = (crossing.t < hits.t) | ((crossing.t <= hits.t) & (object < hits.object));
             hits.t = select(nearer, crossing.t, hits.t);
             hits.object = select(nearer, object, hits.object);
@@ -101,32 +106,49 @@ struct Scene {
     Indices<Real> blocker(const Rays<Real>& rays, Lanes<Real> distance, Mask<Real> wanted) const {
         Indices<Real> blocker = -1;
         Mask<Real> open = wanted;
-        for_each_crossing(rays, [&](Indices<Real> object, const Crossing<Real>& crossing) {
+        // Crossings beyond it do not matter.
+        const Lanes<Real> nowhere = Real(-1);
+        Lanes<Real> limit = select(open, distance, nowhere);
+        for_each_crossing(rays, limit, [&](Indices<Real> object, const Crossing<Real>& crossing) {
             const Mask<Real> blocked = open & (crossing.t < distance);
             blocker = select(blocked, object, blocker);
             open &= ~blocked;
+            limit = select(open, limit, nowhere);
             return any(open);
         });
         return blocker;
     }
 
  private:
-    // Calls visit(object, crossing) for the objects that some ray crosses, until it returns false: the one place that
-    // knows how the objects are searched.
+    // Calls visit(object, crossing) for the objects that some ray crosses before `limit`, and maybe others, until it
+    // returns false: the one place that knows how the objects are searched. visit may lower `limit`.
     template <typename Visit>
-    [[gnu::always_inline]] void for_each_crossing(const Rays<Real>& rays, Visit visit) const {
+    [[gnu::always_inline]] void for_each_crossing(const Rays<Real>& rays, const Lanes<Real>& limit, Visit visit) const {
         Crossing<Real> crossing;
-        for (const Sphere<Real>& sphere : spheres) {
-            if (find_crossing(sphere, rays, crossing) && !visit(sphere.object, crossing)) {
-                return;
+        const auto test = [&](int sphere, int end_sphere, int polyhedron,
+                              int end_polyhedron) __attribute__((always_inline)) {
+            for (; sphere < end_sphere; ++sphere) {
+                const Sphere<Real>& s = spheres[static_cast<std::size_t>(sphere)];
+                if (find_crossing(s, rays, crossing) && !visit(s.object, crossing)) {
+                    return false;
+                }
             }
-        }
-        for (const Polyhedron<Real>& polyhedron : polyhedra) {
-            if (find_crossing(polyhedron, patches.data(), rays, crossing) && !visit(polyhedron.object, crossing)) {
-                return;
+            for (; polyhedron < end_polyhedron; ++polyhedron) {
+                const Polyhedron<Real>& p = polyhedra[static_cast<std::size_t>(polyhedron)];
+                if (find_crossing(p, patches.data(), rays, crossing) && !visit(p.object, crossing)) {
+                    return false;
+                }
             }
+            return true;
+        };
+        if (test(0, spheres_apart, 0, polyhedra_apart)) {
+            tree.for_each_leaf(rays, limit, [&](const TreeNode<Real>& leaf) {
+                return test(leaf.first_sphere, leaf.end_sphere, leaf.first_polyhedron, leaf.end_polyhedron);
+            });
         }
     }
+
+    void add_shape(const SceneDescription& description, int object);
 };
 
 // ---- Preparation --------------------------------------------------------------------------------------------------
@@ -141,8 +163,8 @@ Patch<Real> plane_of(const Quadruple& plane) {
 }
 
 template <typename Real>
-Scene<Real>::Scene(const SceneDescription& description)
-    : ambient(vector_of<Real>(description.ambient)), background(vector_of<Real>(description.background)) {
+Scene<Real>::Scene(const SceneDescription& description, const SearchPlan& plan)
+    : ambient(vector_of<Real>(description.ambient)), background(vector_of<Real>(description.background)), tree(plan) {
     const auto real = [](double value) { return static_cast<Real>(value); };
     for (const LightDescription& light : description.lights) {
         lights.push_back({vector_of<Real>(light.position), vector_of<Real>(light.color), real(light.attenuation[0]),
@@ -153,22 +175,47 @@ Scene<Real>::Scene(const SceneDescription& description)
     }
     objects.reserve(description.objects.size());
     for (const ObjectDescription& object : description.objects) {
-        const auto index = static_cast<int>(objects.size());
-        const auto patch = static_cast<int>(patches.size());
         const FinishDescription& f = description.finishes[static_cast<std::size_t>(object.finish)];
         objects.push_back({{real(f.ka), real(f.kd), real(f.ks), real(f.alpha), real(f.kr), real(f.kt), real(f.eta)},
                            &pigments[static_cast<std::size_t>(object.pigment)],
-                           patch});
+                           static_cast<int>(patches.size())});
         if (const auto* sphere = std::get_if<SphereDescription>(&object.shape)) {
             patches.push_back({vector_of<Real>(sphere->center), real(sphere->radius), true});
-            spheres.emplace_back(patches.back().anchor, patches.back().size, index, patch);
         } else {
-            const auto& planes = std::get_if<PolyhedronDescription>(&object.shape)->planes;
-            for (const Quadruple& plane : planes) {
+            for (const Quadruple& plane : std::get_if<PolyhedronDescription>(&object.shape)->planes) {
                 patches.push_back(plane_of<Real>(plane));
             }
-            polyhedra.push_back({patch, static_cast<int>(planes.size()), index});
         }
+    }
+
+    for (const int object : plan.apart) {
+        add_shape(description, object);
+    }
+    spheres_apart = static_cast<int>(spheres.size());
+    polyhedra_apart = static_cast<int>(polyhedra.size());
+    for (std::size_t i = 0; i < plan.tree.nodes.size(); ++i) {
+        const BvhNode& node = plan.tree.nodes[i];
+        if (node.children == 0) {
+            tree[i].first_sphere = static_cast<int>(spheres.size());
+            tree[i].first_polyhedron = static_cast<int>(polyhedra.size());
+            for (std::size_t k = node.first; k < node.first + node.count; ++k) {
+                add_shape(description, static_cast<int>(plan.tree.order[k]));
+            }
+            tree[i].end_sphere = static_cast<int>(spheres.size());
+            tree[i].end_polyhedron = static_cast<int>(polyhedra.size());
+        }
+    }
+}
+
+template <typename Real>
+void Scene<Real>::add_shape(const SceneDescription& description, int object) {
+    const int patch = objects[static_cast<std::size_t>(object)].first_patch;
+    const auto& shape = description.objects[static_cast<std::size_t>(object)].shape;
+    if (const auto* polyhedron = std::get_if<PolyhedronDescription>(&shape)) {
+        polyhedra.push_back({patch, static_cast<int>(polyhedron->planes.size()), object});
+    } else {
+        const Patch<Real>& sphere = patches[static_cast<std::size_t>(patch)];
+        spheres.emplace_back(sphere.anchor, sphere.size, object, patch);
     }
 }
 

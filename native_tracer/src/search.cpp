@@ -1,0 +1,76 @@
+#include "search.h"
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <cstdint>
+#include <limits>
+#include <optional>
+#include <variant>
+
+#include "polyhedron_box.h"
+
+namespace whitted {
+
+namespace {
+
+constexpr std::uint32_t leaf_size = 4;
+
+// An object whose planes meet at so sharp an angle that the rounding of the given precision moves their edge by more
+// than about this share of the tree's size would make all boxes that much wider, and stays outside the tree.
+constexpr double most_blur = 0x1p-12;
+
+double epsilon_of(Precision precision) {
+    // Boxes are no better than double.
+    return precision == Precision::single ? std::numeric_limits<float>::epsilon()
+                                          : std::numeric_limits<double>::epsilon();
+}
+
+std::optional<PolyhedronBox> box_of(const SphereDescription& sphere) {
+    PolyhedronBox result{{}, 1, 0};
+    for (std::size_t k = 0; k < 3; ++k) {
+        constexpr double infinity = std::numeric_limits<double>::infinity();
+        result.box.low[k] = std::nextafter(sphere.center[k] - sphere.radius, -infinity);
+        result.box.high[k] = std::nextafter(sphere.center[k] + sphere.radius, infinity);
+        if (!std::isfinite(result.box.low[k]) || !std::isfinite(result.box.high[k])) {
+            return std::nullopt;
+        }
+    }
+    return result;
+}
+
+}  // namespace
+
+SearchPlan plan_search(const SceneDescription& scene, Search search, Precision precision) {
+    SearchPlan plan;
+    const bool wants_tree =
+        search == Search::bvh || (search == Search::automatic && scene.objects.size() >= least_objects_of_a_tree);
+    std::vector<Box> boxes;
+    std::vector<std::uint32_t> objects;
+    for (std::size_t i = 0; i < scene.objects.size(); ++i) {
+        std::optional<PolyhedronBox> found;
+        if (wants_tree) {
+            const auto& shape = scene.objects[i].shape;
+            const auto* sphere = std::get_if<SphereDescription>(&shape);
+            found = sphere != nullptr ? box_of(*sphere) : box_of(std::get<PolyhedronDescription>(shape).planes);
+        }
+        if (!found || 32 * epsilon_of(precision) * found->growth > most_blur) {
+            plan.apart.push_back(static_cast<int>(i));
+            continue;
+        }
+        boxes.push_back(found->box);
+        objects.push_back(static_cast<std::uint32_t>(i));
+        plan.growth = std::max(plan.growth, found->growth);
+        plan.reach = std::max(plan.reach, found->reach);
+        for (std::size_t k = 0; k < 3; ++k) {
+            plan.reach = std::max({plan.reach, -found->box.low[k], found->box.high[k]});
+        }
+    }
+    plan.tree = build_bvh(boxes, leaf_size);
+    for (std::uint32_t& item : plan.tree.order) {
+        item = objects[item];
+    }
+    return plan;
+}
+
+}  // namespace whitted
