@@ -15,6 +15,7 @@ class _Statistics(TypedDict):
     shadow: int
     deepest: int
     threads: int
+    search: Literal["brute", "bvh"]
 
 class Scene:
     """A scene to be built, element by element; indices count from 0."""
@@ -71,7 +72,7 @@ class Image:
 
     @property
     def statistics(self) -> _Statistics:
-        """Rays of the last rendering by kind, its deepest bounce and its threads."""
+        """Rays of the last rendering by kind, its deepest bounce, its threads, and how it searched."""
 
 def render(
     scene: Scene,
@@ -83,12 +84,15 @@ def render(
     corner: bool = True,
     blinn: bool = False,
     precision: Literal["float", "double", "long double"] = "double",
+    search: Literal["auto", "brute", "bvh"] = "auto",
     threads: int = 0,
     progress: Callable[[float], object] | None = None,
     instructions: Literal["", "baseline", "avx2", "avx512"] = "",
 ) -> None:
     """Draw `scene` into `image`.
 
+    Objects are searched one by one ("brute") or by a tree over their boxes ("bvh"), by default whichever is faster for
+    their number; the picture's bytes are the same, and the image's statistics say which it was.
     `progress` is called about 20 times a second with the finished share; what it raises, and Ctrl-C, stop the
     rendering, and what is finished stays in the image. `instructions` forces an instruction set, "" takes the best.
     """
@@ -106,6 +110,7 @@ def trace_pixel(
     corner: bool = True,
     blinn: bool = False,
     precision: Literal["float", "double", "long double"] = "double",
+    search: Literal["auto", "brute", "bvh"] = "auto",
 ) -> dict[str, Any]:
     """The rays of one pixel as nested dictionaries; `converter.renderers.native` describes them.
 

@@ -12,13 +12,22 @@ from converter.scene.needs import SceneNeeds, scene_needs
 from converter.scene.settings import Settings
 
 Precision = Literal["float", "double", "long double"]
+Search = Literal["auto", "brute", "bvh"]
 
 
 @dataclass(frozen=True)
 class NativeRenderer:
-    """Draws with `native_tracer`, in the given precision: "double" is the reference, "long double" checks it."""
+    """Draws with `native_tracer`.
+
+    Attributes:
+        precision: "double" is the reference, "long double" checks it.
+        search: how the objects that a ray hits are found: one by one, by a tree over their boxes (a bounding volume
+            hierarchy), or by whichever is faster for their number. The picture is the same, byte for byte.
+
+    """
 
     precision: Precision = "double"
+    search: Search = "auto"
 
     @property
     def name(self) -> str:
@@ -103,6 +112,7 @@ class NativeRenderer:
             "cutoff": settings.cutoff,
             "max_depth": needs.max_depth,
             "precision": self.precision,
+            "search": self.search,
         }
 
 
