@@ -92,7 +92,7 @@ def render(
     """Draw `scene` into `image`.
 
     Objects are searched one by one ("brute") or by a tree over their boxes ("bvh"), by default whichever is faster for
-    their number; the picture's bytes are the same, and the image's statistics say which it was.
+    so many; the picture's bytes are the same, and the image's statistics say which it was.
     `progress` is called about 20 times a second with the finished share; what it raises, and Ctrl-C, stop the
     rendering, and what is finished stays in the image. `instructions` forces an instruction set, "" takes the best.
     """

@@ -3,7 +3,6 @@
 #pragma once
 
 #include <array>
-#include <cstddef>
 #include <cstdint>
 #include <variant>
 #include <vector>
@@ -80,9 +79,6 @@ enum class Precision { single, normal, extended };  // float, double, long doubl
 
 // How the objects are searched: one by one, or by a tree over their boxes; by default whichever is faster.
 enum class Search { automatic, brute, bvh };
-
-// From so many objects on a tree is faster.
-inline constexpr std::size_t least_objects_of_a_tree = 32;
 
 struct RenderSettings {
     int width, height;
