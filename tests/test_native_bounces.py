@@ -236,4 +236,5 @@ def test_rays_are_counted_by_kind(precision):
         "shadow": 0,
         "deepest": 3,
         "threads": 1,
+        "search": "brute",
     }

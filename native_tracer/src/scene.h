@@ -88,15 +88,17 @@ struct Scene {
     Scene(const SceneDescription& description, const SearchPlan& plan);
     Scene(const Scene&) = delete;  // objects point to pigments
 
-    // The nearest hit of each ray; of objects at the same distance, the first of the file.
-    Hits<Real> nearest_hit(const Rays<Real>& rays) const {
+    // The nearest hit of each ray; of objects at the same distance, the first of the file; for the rays in `wanted`.
+    Hits<Real> nearest_hit(const Rays<Real>& rays, Mask<Real> wanted) const {
         Hits<Real> hits;
-        for_each_crossing(rays, hits.t, [&](Indices<Real> object, const Crossing<Real>& crossing) {
+        Lanes<Real> limit = select(wanted, hits.t, Lanes<Real>(Real(-1)));
+        for_each_crossing(rays, limit, [&](Indices<Real> object, const Crossing<Real>& crossing) {
             const Mask<Real> nearer = (crossing.t < hits.t) | ((crossing.t <= hits.t) & (object < hits.object));
             hits.t = select(nearer, crossing.t, hits.t);
             hits.object = select(nearer, object, hits.object);
             hits.patch = select(nearer, crossing.patch, hits.patch);
             hits.inside = select(nearer, crossing.inside, hits.inside);
+            limit = min(hits.t, limit);
             return true;
         });
         return hits;

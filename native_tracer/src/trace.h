@@ -113,7 +113,7 @@ bool Tracer<Real, Observer>::trace(PrimaryRays primary_rays, Color<Sum>* sums, R
 // Traces a ray in each lane, and leaves those that follow from them on the stack.
 template <typename Real, typename Observer>
 void Tracer<Real, Observer>::trace_group(const Group<Real>& group) {
-    const Hits<Real> hits = scene_.nearest_hit(group.rays);
+    const Hits<Real> hits = scene_.nearest_hit(group.rays, group.active);
     Color<L> color(scene_.background);
     if (any(group.active & (hits.object >= 0))) {
         const Surface<Real> surface = surface_at(group.rays, hits);
