@@ -78,7 +78,7 @@ class Tree {
  public:
     using L = Lanes<Real>;
 
-    // Without its leaves' objects, which leaf() is for.
+    // Without its leaves' objects, which are put into its nodes afterwards.
     explicit Tree(const SearchPlan& plan)
         : growth_(static_cast<Real>(plan.growth)), reach_(static_cast<Real>(plan.reach)) {
         nodes_.reserve(plan.tree.nodes.size());
