@@ -13,18 +13,18 @@ from converter.scene.settings import Settings
 
 SCENES = sorted((Path(__file__).parent.parent / "scenes").glob("*.in"))
 SETTINGS = Settings(width=200, height=150)
-MOST_DISAGREEING_PIXELS = 3
-"""Of 30,000: a silhouette or a shadow's edge may run through a pixel's ray to within a rounding."""
+MOST_THROUGH_EMBREE = 3
+"""Pixels of 30,000 that may disagree: Embree decides in single precision on which side of an edge a ray passes."""
 
 
-def agree(scene, settings, renderer, tmp_path):
+def agree(scene, settings, renderer, tmp_path, most=0):
     """Compare a renderer's picture with the native tracer's, and leave both where a failure's message says."""
     reference = np.asarray(NativeRenderer().render(scene, settings).pixels)
     result = np.asarray(renderer.render(scene, settings).pixels)
     difference = compare_pixels(reference, result)
     for name, image in (("reference", reference), ("result", result), ("difference", np.abs(reference - result))):
         np.save(tmp_path / f"{name}.npy", image)
-    assert difference.disagreeing <= MOST_DISAGREEING_PIXELS, f"{difference.largest}; pictures: {tmp_path}"
+    assert difference.disagreeing <= most, f"{difference.largest}; pictures: {tmp_path}"
 
 
 @pytest.mark.parametrize("file", SCENES, ids=lambda file: file.stem)
@@ -34,9 +34,9 @@ def test_default_method_agrees(mi, file, tmp_path):
 
 @pytest.mark.parametrize("name", ["figure1", "bubble", "solids", "endless", "room", "nested"])
 def test_meshes_agree(mi, name, tmp_path):
-    """The way through Embree, on scenes that are small enough for the default to go another."""
+    """The way through Embree."""
     file = next(file for file in SCENES if file.stem == name)
-    agree(load_scene(file), SETTINGS, MitsubaRenderer("llvm_ad_rgb", "mesh"), tmp_path)
+    agree(load_scene(file), SETTINGS, MitsubaRenderer("llvm_ad_rgb", "mesh"), tmp_path, MOST_THROUGH_EMBREE)
 
 
 @pytest.mark.parametrize(
@@ -62,7 +62,7 @@ def test_pictures_larger_than_one_band_agree(mi, small_scene, tmp_path):
     agree(small_scene, Settings(width=700, height=500), MitsubaRenderer("llvm_ad_rgb"), tmp_path)
 
 
-@pytest.mark.parametrize("intersections", ["analytic", "mesh"])
+@pytest.mark.parametrize("intersections", ["analytic", "bvh", "mesh"])
 def test_pixel_trees_agree(mi, small_scene, intersections):
     """Ray by ray: the same objects, planes and shadows, and the colours that the pictures have."""
     settings = Settings(width=40, height=30)

@@ -221,7 +221,7 @@ def test_power_underflows(mi):
 # ---- The integrator
 
 
-@pytest.mark.parametrize("intersections", ["analytic", "mesh"])
+@pytest.mark.parametrize("intersections", ["analytic", "bvh", "mesh", "offset"])
 def test_symbolic_and_evaluated_loops_agree(mi, small_scene, intersections):
     """Dr.Jit compiles the integrator's loops; run step by step they must draw the same."""
     import drjit as dr

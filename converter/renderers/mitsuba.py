@@ -56,7 +56,11 @@ class MitsubaRenderer:
 
         def rendering() -> Rendering:
             seconds = {"start": ready - started, "build": built - ready, "render": time.perf_counter() - built}
-            statistics = {"variant": variant, "intersections": integrator.intersections, "precision": integrator.precision}
+            statistics = {
+                "variant": variant,
+                "intersections": integrator.intersections,
+                "precision": integrator.precision,
+            }
             return Rendering(pixels, settings.width, settings.height, seconds, statistics)
 
         try:

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from converter.scene.model import Object, Polyhedron, Scene, Sphere
 from converter.scene.needs import SceneNeeds
 from converter.scene.settings import Settings
+from converter.to_mitsuba.bounds import Box, scene_bounds
 
 MOST_TRIANGLES = 1 << 24
 """Of all spheres together, where they are meshes."""
@@ -23,7 +24,7 @@ class SphereMesh:
     triangles: NDArray[np.int64]
 
     def placed(self, sphere: Sphere) -> "SphereMesh":
-        """This unit sphere, moved and scaled."""
+        """Move and scale this unit sphere."""
         return SphereMesh(sphere.center + sphere.radius * self.normals, self.normals, self.triangles)
 
 
@@ -79,11 +80,7 @@ def shapes(
     """
     result: dict[str, dict[str, Any]] = {}
     meshes: dict[str, dict[str, Any]] = {}
-    bounds = None
-    if any(isinstance(o.shape, Polyhedron) for o in scene.objects):
-        from converter.to_mitsuba.bounds import scene_bounds
-
-        bounds = scene_bounds(scene, settings)
+    bounds: Box | None = None
     ball = None
     if sphere_tolerance is not None:
         ball = unit_ball(sphere_tolerance, sum(isinstance(o.shape, Sphere) for o in scene.objects))
@@ -92,6 +89,7 @@ def shapes(
         if isinstance(o.shape, Polyhedron):
             from converter.to_mitsuba.polyhedra import polyhedron_mesh
 
+            bounds = bounds or scene_bounds(scene, settings)
             mesh = polyhedron_mesh(o.shape.planes, bounds, f"object {i}")
             result[name] = {"type": "mesh", "mesh": mesh}
             meshes[name] = {"triangles": mesh.planes.tolist(), "deviation": mesh.deviation}

@@ -71,16 +71,17 @@ class AnalyticSurfaces(ExactSurfaces):
         sphere = self._spheres[index]
         if sphere is not None:
             return sphere_distance(*sphere, ray, own), mi.UInt32(self.records.first[index])
-        if self._bounds[index] is not None:
-            return self._intersect_bounded(index, ray, own)
+        bound = self._bounds[index]
+        if bound is not None:
+            return self._intersect_bounded(index, bound, ray, own)
         return self._intersect_planes(index, ray, own)
 
     @dr.syntax
-    def _intersect_bounded(self, index: int, ray: Ray, own: Any) -> tuple[Any, Any]:
+    def _intersect_bounded(self, index: int, bound: tuple[Any, Any], ray: Ray, own: Any) -> tuple[Any, Any]:
         """A branch and no mask: most packets of rays pass by most polyhedra and save their planes."""
         t = dr.full(self._types.Float, dr.inf, dr.width(ray.d))
         record = dr.zeros(mi.UInt32, dr.width(ray.d))
-        center, radius = self._bounds[index]
+        center, radius = bound
         f = ray.o - center
         b = -dr.dot(f, ray.d)
         if (dr.squared_norm(f + b * ray.d) <= radius * radius) & (b > -radius):

@@ -70,7 +70,9 @@ class BvhSurfaces(ExactSurfaces):
             tested = searching & (index != NOTHING)
             if tested:
                 t, record = self._intersect(ray, index, tested)
-                closer = tested & ((t < t_best) | ((t == t_best) & (index < object_best)))
+                # Of surfaces at the same distance the first counts.
+                ties = (t == t_best) & (object_best != NOTHING) & (index < object_best)
+                closer = tested & ((t < t_best) | ties)
                 t_best = dr.select(closer, t, t_best)
                 object_best = dr.select(closer, index, object_best)
                 record_best = dr.select(closer, record, record_best)

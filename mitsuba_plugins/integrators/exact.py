@@ -146,7 +146,7 @@ def narrow(passage: Passage, ray: Ray, n: Any, offset: Any, record: Any) -> Pass
 
 
 def passage_distance(passage: Passage, ray: Ray, own: Any) -> tuple[Any, Any]:
-    """Distance to the polyhedron, infinite for none, and the record of the plane met; `own` where the ray starts on it."""
+    """Distance to the polyhedron, infinite for none, and the record of its plane; `own` where the ray starts on it."""
     front = passage.enter > ray.t_min
     t = dr.select(front, passage.enter, passage.leave)
     t = dr.select(~passage.outside & (passage.enter <= passage.leave) & (t > ray.t_min), t, dr.inf)

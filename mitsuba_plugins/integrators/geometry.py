@@ -37,8 +37,8 @@ class Surface:
 class Geometry:
     """The surfaces of a scene.
 
-    An object of a class that Dr.Jit does not know, since it looks for arrays in all lists, dictionaries and data classes
-    that a plugin holds, again for every loop and branch that it records.
+    An object of a class that Dr.Jit does not know, since it looks for arrays in all lists, dictionaries and data
+    classes that a plugin holds, again for every loop and branch that it records.
     """
 
     def __init__(self, surfaces: list[Surface]) -> None:

@@ -71,7 +71,8 @@ class MeshSurfaces(ExactSurfaces):
             searching = met & ~allowed & (steps < MOST_STEPS)
             step = (largest(start) + ray_reach(ray) + self._types.Float(pi.t)) * OFFSET
             step += dr.gather(self._types.Float, self._deviation, index, met)
-            start = self._types.Point3(start + ray.d * (self._types.Float(pi.t) + step * self._types.Float(mi.UInt32(1) << steps)))
+            step *= self._types.Float(mi.UInt32(1) << steps)
+            start = self._types.Point3(start + ray.d * (self._types.Float(pi.t) + step))
         return t, found, record
 
     def _distance(self, index: Any, record: Any, ray: Ray, active: Any) -> Any:

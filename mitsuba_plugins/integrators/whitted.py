@@ -73,20 +73,21 @@ class Whitted(mi.SamplingIntegrator):
 
      * - intersections
        - |string|
-       - ``analytic``: intersect spheres and half-spaces in the kernel, each with code of its own; ``bvh``: through a tree
-         of boxes; ``mesh``: let Embree or OptiX find which of the scene's shapes is hit and compute where from the exact
-         surface; ``offset``, ``ulp``: believe Embree or OptiX, and start rays off the surface by Mitsuba's own offset or
-         Waechter and Binder's; ``auto``: ``analytic`` for small scenes, else ``bvh`` (Default: auto)
+       - ``analytic``: intersect spheres and half-spaces in the kernel, each with code of its own; ``bvh``: through a
+         tree of boxes; ``mesh``: let Embree or OptiX find which of the scene's shapes is hit and compute where from
+         the exact surface; ``offset``, ``ulp``: believe Embree or OptiX, and start rays off the surface by Mitsuba's
+         own offset or Waechter and Binder's; ``auto``: ``analytic`` for small scenes, else ``bvh`` (Default: auto)
 
      * - precision
        - |string|
-       - ``double`` or ``float``: of rays and intersections; ``offset`` and ``ulp`` know ``float`` only (Default: double)
+       - ``double`` or ``float``: of rays and intersections; ``offset`` and ``ulp`` have ``float`` only
+         (Default: double)
 
     The scene's shapes are needed for ``mesh``, ``offset`` and ``ulp`` only. Every light is an ``attenuated_point``.
     Switching off what a scene does not need makes it faster and changes nothing else. In double precision rays keep
-    their origins and directions so from bounce to bounce, and, where the sensor is a ``pinhole``, from the camera on. Whitted, An Improved Illumination
-    Model for Shaded Display, Communications of the ACM 23(6), 1980. Not for indirect diffuse light, area lights or
-    gradients.
+    their origins and directions so from bounce to bounce, and, where the sensor is a ``pinhole``, from the camera on.
+    Whitted, An Improved Illumination Model for Shaded Display, Communications of the ACM 23(6), 1980. Not for indirect
+    diffuse light, area lights or gradients.
     """
 
     def __init__(self, props):
@@ -353,7 +354,8 @@ class Whitted(mi.SamplingIntegrator):
             callback.put(name, bsdf, mi.ParamFlags.Differentiable)
 
     def to_string(self):
-        return f"Whitted[{len(self.surfaces)} surfaces, {self.intersections}, {self.precision}, max_depth={self.max_depth}]"
+        way = f"{self.intersections}, {self.precision}"
+        return f"Whitted[{len(self.surfaces)} surfaces, {way}, max_depth={self.max_depth}]"
 
 
 def _materials(props, surfaces):

@@ -50,7 +50,8 @@ class Pinhole(mi.Sensor):
             Its origin (Point3d) and unit direction (Vector3d).
 
         """
-        width, height = self.film().size()
+        # Opaque, so that pictures of all sizes share one kernel.
+        width, height = (dr.opaque(mi.Float64, size) for size in self.film().size())
         forward = _unit(self.look_at - self.eye)
         right = _unit(dr.cross(forward, self.up))
         upward = dr.cross(right, forward)
