@@ -11,6 +11,7 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
+from mitsuba_plugins.integrators.columns import column
 from mitsuba_plugins.integrators.exact import (
     ExactSurfaces,
     Records,
@@ -36,9 +37,9 @@ class BvhSurfaces(ExactSurfaces):
         self._nodes, self._node_count = _nodes(surfaces)
         self._any_sphere = any(surface.sphere is not None for surface in surfaces)
         self._any_polyhedron = any(surface.sphere is None for surface in surfaces)
-        self._first = mi.UInt32(np.array(records.first or [0], dtype=np.uint32))
-        self._count = mi.UInt32(np.array([len(surface.planes) for surface in surfaces] or [0], dtype=np.uint32))
-        dr.make_opaque(self._nodes, self._node_count, self._first, self._count)
+        self._first = column(mi.UInt32, records.first)
+        self._count = column(mi.UInt32, [len(surface.planes) for surface in surfaces])
+        dr.make_opaque(self._node_count)
 
     def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any]:
         """Distance (infinite for none), object (NOTHING for none) and record of the first hit."""
@@ -159,4 +160,4 @@ def _nodes(surfaces: list[Surface]) -> tuple[Any, Any]:
     # NO_ITEM becomes NOTHING.
     objects = np.array([*bounded, NOTHING], dtype=np.uint32)
     words[:, first:, 7] = objects[np.minimum(tree.item, len(bounded))].reshape(8, tree.size)
-    return mi.Float(nodes.ravel()), mi.UInt32(count)
+    return column(mi.Float, nodes), mi.UInt32(count)

@@ -5,8 +5,8 @@ from typing import Any
 
 import drjit as dr
 import mitsuba as mi
-import numpy as np
 
+from mitsuba_plugins.integrators.columns import column
 from mitsuba_plugins.integrators.geometry import Surface
 from mitsuba_plugins.integrators.rays import NOTHING, Hit, Ray, Real, spawn
 
@@ -21,10 +21,8 @@ class Records:
             self.first.append(len(rows))
             rows.extend([surface.sphere] if surface.sphere is not None else surface.planes.values())
         self._types = types
-        # Dr.Jit takes up long lists slowly.
-        self._rows = types.Float(np.array(rows or [(0.0,) * 4]).ravel())
-        self._is_sphere = mi.Bool(np.array([surface.sphere is not None for surface in surfaces] or [False]))
-        dr.make_opaque(self._rows, self._is_sphere)
+        self._rows = column(types.Float, rows or [(0.0,) * 4])
+        self._is_sphere = column(mi.Bool, [surface.sphere is not None for surface in surfaces])
 
     def row(self, record: Any, active: Any) -> Any:
         """The four numbers of a record (Vector4)."""

@@ -12,8 +12,8 @@ from typing import Any
 
 import drjit as dr
 import mitsuba as mi
-import numpy as np
 
+from mitsuba_plugins.integrators.columns import column
 from mitsuba_plugins.integrators.exact import ExactSurfaces, Records, sphere_distance
 from mitsuba_plugins.integrators.geometry import Surface
 from mitsuba_plugins.integrators.primitives import Primitives
@@ -32,9 +32,8 @@ class MeshSurfaces(ExactSurfaces):
         self._types = types
         self._scene = scene
         self._primitives = Primitives(scene, surfaces, records)
-        self._deviation = types.Float(np.array([surface.deviation for surface in surfaces] or [0.0]))
-        self._extent = types.Float(np.array([_extent(surface) for surface in surfaces] or [0.0]))
-        dr.make_opaque(self._deviation, self._extent)
+        self._deviation = column(types.Float, [surface.deviation for surface in surfaces])
+        self._extent = column(types.Float, [_extent(surface) for surface in surfaces])
 
     def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any]:
         """Distance (infinite for none), object (NOTHING for none) and record of the first hit."""

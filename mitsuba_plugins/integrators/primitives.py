@@ -4,8 +4,8 @@ from typing import Any
 
 import drjit as dr
 import mitsuba as mi
-import numpy as np
 
+from mitsuba_plugins.integrators.columns import column
 from mitsuba_plugins.integrators.exact import Records
 from mitsuba_plugins.integrators.geometry import Surface
 
@@ -41,10 +41,9 @@ class Primitives:
             row = {plane: row for row, plane in enumerate(surface.planes)}
             planes = surface.triangles or (0,) * shape.primitive_count()
             record_of.extend(records.first[index] + row.get(plane, 0) for plane in planes)
-        self._object = mi.UInt32(np.array(object_of, dtype=np.uint32))
-        self._first_primitive = mi.UInt32(np.array(first_primitive, dtype=np.uint32))
-        self._record = mi.UInt32(np.array(record_of or [0], dtype=np.uint32))
-        dr.make_opaque(self._object, self._first_primitive, self._record)
+        self._object = column(mi.UInt32, object_of)
+        self._first_primitive = column(mi.UInt32, first_primitive)
+        self._record = column(mi.UInt32, record_of)
 
     def find(self, hit: Any, active: Any) -> tuple[Any, Any]:
         """Object and record of what a PreliminaryIntersection3f has met."""

@@ -10,8 +10,8 @@ from typing import Any
 
 import drjit as dr
 import mitsuba as mi
-import numpy as np
 
+from mitsuba_plugins.integrators.columns import column
 from mitsuba_plugins.integrators.rays import Real
 
 
@@ -49,13 +49,13 @@ class Materials:
         self.blinn = any(bsdf.blinn for bsdf in finishes.values())
         finish_row = {key: row for row, key in enumerate(finishes)}
         texture_row = {key: row for row, key in enumerate(textures)}
-        self._finish = _indices([finish_row[id(bsdf)] for bsdf in bsdfs])
-        self._texture = _indices([texture_row[id(bsdf.pigment)] for bsdf in bsdfs])
+        self._finish = column(mi.UInt32, [finish_row[id(bsdf)] for bsdf in bsdfs])
+        self._texture = column(mi.UInt32, [texture_row[id(bsdf.pigment)] for bsdf in bsdfs])
         self._colors = [_color_function(texture) for texture in textures.values()]
         zero, rows = mi.Float64(0), finishes.values()
         self._weights = mi.Float(dr.concat([n for f in rows for n in (f.ka, f.kd, f.ks, zero)] or [zero] * 4))
         self._exact = types.Float(dr.concat([n for f in rows for n in (f.kr, f.kt, f.eta, f.alpha)] or [zero] * 4))
-        dr.make_opaque(self._finish, self._texture, self._weights, self._exact)
+        dr.make_opaque(self._weights, self._exact)
 
     def finish(self, index: Any, active: Any) -> Finish:
         """The finish of an object."""
@@ -71,11 +71,6 @@ class Materials:
         if len(self._colors) == 1:
             return self._colors[0](p)
         return dr.switch(dr.gather(mi.UInt32, self._texture, index, active), self._colors, p)
-
-
-def _indices(numbers: list[int]) -> Any:
-    # Through NumPy, since Dr.Jit takes up long lists slowly.
-    return mi.UInt32(np.array(numbers or [0], dtype=np.uint32))
 
 
 def _color_function(texture: Any) -> Any:

@@ -306,8 +306,9 @@ class Whitted(mi.SamplingIntegrator):
             rows = min(height - first, max(1, rays // (width * len(offsets))))
             started = time.perf_counter()
             pixel = dr.arange(mi.UInt32, rows * width)
-            row = pixel // dr.opaque(mi.UInt32, width)
-            corner = mi.Point2d(pixel - row * width, row + dr.opaque(mi.UInt32, first)) + crop_offset
+            columns = dr.opaque(mi.UInt32, width)
+            row = pixel // columns
+            corner = mi.Point2d(pixel - row * columns, row + dr.opaque(mi.UInt32, first)) + crop_offset
             color = mi.Color3f(0)
             with dr.suspend_grad():
                 for x, y in offsets:
