@@ -30,7 +30,7 @@ from converter.scene.settings import Settings
 ROOT = Path(__file__).resolve().parent.parent
 FIGURE1 = ROOT / "scenes" / "figure1.in"
 PROGRAMS = Path(sys.executable).parent
-RUNS = 11
+RUNS, FEW_RUNS = 11, 5
 
 
 def main() -> None:
@@ -42,39 +42,51 @@ def main() -> None:
 
 
 def agreement() -> None:
-    """Each scene at 800 x 600: Mitsuba's default method against native double."""
-    print("Agreement at 800 x 600, pixels that differ by more than 1/255 in any channel")
-    print(f"{'scene':<18}{'disagree':>9}{'%':>9}{'largest':>12}{'native s':>10}{'Mitsuba s':>10}  intersections")
+    """Each scene at 800 x 600: Mitsuba's methods against native double, and their times."""
+    renderers = {
+        "default": MitsubaRenderer(),
+        "mesh": MitsubaRenderer(intersections="mesh"),
+        "ulp": MitsubaRenderer(intersections="ulp"),
+        "offset": MitsubaRenderer(intersections="offset"),
+    }
+    print(
+        "800 x 600: pixels of 480,000 that differ from native double by more than 1/255, and seconds to render, warm,"
+    )
+    print(
+        f"medians of {FEW_RUNS} runs in turn: Mitsuba's default method, Embree with exact surfaces, Embree alone with"
+    )
+    print("Waechter and Binder's offset, and with Mitsuba's own")
+    heads = "".join(f"{name:>10}" for name in renderers)
+    print(f"{'':<18}{heads}{'native s':>12}{heads}  default is")
     for file in sorted((ROOT / "scenes").glob("*.in")):
         scene, settings = load_scene(file), Settings()
-        native = NativeRenderer().render(scene, settings)
-        MitsubaRenderer().render(scene, settings)
-        mitsuba = MitsubaRenderer().render(scene, settings)
-        metrics = compare_pixels(np.asarray(native.pixels), np.asarray(mitsuba.pixels))
-        seconds = f"{native.seconds['render']:>10.3f}{mitsuba.seconds['render']:>10.3f}"
-        difference = f"{metrics.disagreeing_percent:>9.4f}{metrics.largest.difference:>12.2e}"
-        print(f"{file.name:<18}{metrics.disagreeing:>9}{difference}{seconds}  {mitsuba.statistics['intersections']}")
+        native = NativeRenderer()
+        truth = np.asarray(native.render(scene, settings).pixels)
+        pictures = {name: renderer.render(scene, settings) for name, renderer in renderers.items()}
+        wrong = [compare_pixels(truth, np.asarray(picture.pixels)).disagreeing for picture in pictures.values()]
+        times = _interleaved(
+            {name: _seconds(renderer, file) for name, renderer in {"native": native, **renderers}.items()}, FEW_RUNS
+        )
+        medians = [statistics.median(values) for values in times.values()]
+        counts = "".join(f"{count:>10}" for count in wrong)
+        seconds = f"{medians[0]:>12.3f}" + "".join(f"{median:>10.3f}" for median in medians[1:])
+        print(f"{file.name:<18}{counts}{seconds}  {pictures['default'].statistics['intersections']}", flush=True)
 
 
 def speed() -> None:
     """Figure 1 at 800 x 600: rendering alone, warm, and whole processes."""
-    scene, settings = load_scene(FIGURE1), Settings()
-
-    def seconds(renderer: Renderer) -> Callable[[], float]:
-        return lambda: renderer.render(scene, settings).seconds["render"]
-
     print(f"Figure 1 at 800 x 600, {len(os.sched_getaffinity(0))} threads, seconds of {RUNS} runs in turn")
     with tempfile.TemporaryDirectory() as folder:
         subjects = {
-            "native double": seconds(NativeRenderer()),
-            "native float": seconds(NativeRenderer("float")),
-            "Mitsuba": seconds(MitsubaRenderer()),
-            "Mitsuba, meshes": seconds(MitsubaRenderer(intersections="mesh")),
+            "native double": _seconds(NativeRenderer(), FIGURE1),
+            "native float": _seconds(NativeRenderer("float"), FIGURE1),
+            "Mitsuba": _seconds(MitsubaRenderer(), FIGURE1),
+            "Mitsuba, meshes": _seconds(MitsubaRenderer(intersections="mesh"), FIGURE1),
             "raytrace (process)": _process("raytrace", FIGURE1, Path(folder, "a.ppm")),
             "whitted render (process)": _process("whitted", "render", FIGURE1, Path(folder, "b.ppm"), "--quiet"),
         }
         if shutil.which("povray"):
-            subjects["POV-Ray (trace time)"] = seconds(PovrayRenderer())
+            subjects["POV-Ray (trace time)"] = _seconds(PovrayRenderer(), FIGURE1)
         times = _interleaved(subjects)
     print(f"{'':<26}{'median':>9}{'least':>9}{'faster than POV-Ray, medians':>32}")
     povray = statistics.median(times.get("POV-Ray (trace time)", [math.nan]))
@@ -99,10 +111,16 @@ def memory() -> None:
         print(f"{method:<10}{usage.ru_maxrss / 1024:>8.0f} MiB")
 
 
-def _interleaved(subjects: dict[str, Callable[[], float]]) -> dict[str, list[float]]:
-    """Seconds of each subject in RUNS rounds, after one that is not counted."""
+def _seconds(renderer: Renderer, file: Path) -> Callable[[], float]:
+    """Draws a scene, and tells the seconds that the rendering alone took."""
+    scene, settings = load_scene(file), Settings()
+    return lambda: renderer.render(scene, settings).seconds["render"]
+
+
+def _interleaved(subjects: dict[str, Callable[[], float]], runs: int = RUNS) -> dict[str, list[float]]:
+    """Seconds of each subject in rounds, after one that is not counted."""
     times: dict[str, list[float]] = {name: [] for name in subjects}
-    for _ in range(RUNS + 1):
+    for _ in range(runs + 1):
         for name, subject in subjects.items():
             times[name].append(subject())
     return {name: values[1:] for name, values in times.items()}
