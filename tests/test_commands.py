@@ -752,6 +752,26 @@ def test_convert(whitted, scene, tmp_path, mi):
     assert mi.load_file(str(folder / "scene.xml")).sensors()[0].film().crop_size()[0] == 40
 
 
+def test_convert_makes_no_thousands_of_shapes(whitted, tmp_path, mi):
+    """Each would be a plugin of its own; the integrator draws the scene without them."""
+    import numpy as np
+
+    from converter.renderers.mitsuba import MitsubaRenderer
+    from converter.scene.parser import load_scene
+    from converter.scene.settings import Settings
+
+    file = tmp_path / "large.in"
+    program = Path(__file__).parent.parent / "scenes" / "large.py"
+    subprocess.run([sys.executable, program, "sphereflake", "4", file], check=True)
+    status, _, err = whitted("convert", file, tmp_path / "out", 80, 60)
+    assert status == 0
+    assert "the `whitted` integrator alone sees them" in err
+    assert "<shape" not in (tmp_path / "out" / "scene.xml").read_text()
+    exported = np.asarray(mi.render(mi.load_file(str(tmp_path / "out" / "scene.xml"))))
+    rendered = MitsubaRenderer("llvm_ad_rgb").render(load_scene(file), Settings(width=80, height=60))
+    assert np.array_equal(exported, rendered.pixels)
+
+
 def test_convert_refuses_a_folder_of_others(whitted, scene, tmp_path):
     status, _, err = whitted("convert", scene, tmp_path, "-q")
     assert status == 2

@@ -58,9 +58,15 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _to_mitsuba(scene: "Scene", settings: "Settings", out: Path, quiet: bool) -> tuple[list[Path], str]:
     """The files written, and what to do with them."""
-    from converter.to_mitsuba.export import export_scene
+    from converter.commands.notes import say
+    from converter.to_mitsuba.export import MOST_SHAPES, export_scene
 
     files = export_scene(scene, settings, out)
+    if len(scene.objects) > MOST_SHAPES:
+        say(
+            f"note: of more than {MOST_SHAPES} objects no shapes are made: the `whitted` integrator alone sees them",
+            quiet,
+        )
     load = f"image = mitsuba.render(mitsuba.load_file({str(files[0])!r}))"
     return files, f"In Python:\n\nimport mitsuba_plugins, mitsuba; mitsuba_plugins.set_variant()\n{load}"
 
