@@ -53,14 +53,6 @@ def test_a_lit_floor(precision):
     assert pixel(scene_of(Solid((1, 1, 1)), lights=(light,)), precision=precision) == (0.5, 0.375, 0.3125)
 
 
-def test_names():
-    assert [NativeRenderer(p).name for p in ("float", "double", "long double")] == [
-        "native-float",
-        "native-double",
-        "native-long-double",
-    ]
-
-
 def test_seconds_and_statistics():
     rendering = NativeRenderer().render(scene_of(Solid((1, 1, 1))), Settings(width=20, height=10, threads=2))
     assert list(rendering.seconds) == ["build", "render"]

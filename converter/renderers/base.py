@@ -47,11 +47,6 @@ class RendererUnavailable(Exception):  # noqa: N818 - what it says
 class Renderer(Protocol):
     """Draws scenes."""
 
-    @property
-    def name(self) -> str:
-        """What tables call it."""
-        ...
-
     def render(self, scene: Scene, settings: Settings, progress: Progress | None = None) -> Rendering:
         """Draw `scene`.
 

@@ -29,11 +29,6 @@ class MitsubaRenderer:
     precision: RayPrecision = "double"
     sphere_tolerance: float | None = None
 
-    @property
-    def name(self) -> str:
-        """E.g. "mitsuba-auto"."""
-        return f"mitsuba-{self.variant}"
-
     def render(self, scene: Scene, settings: Settings, progress: Progress | None = None) -> Rendering:
         """Draw `scene`.
 

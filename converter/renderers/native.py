@@ -29,11 +29,6 @@ class NativeRenderer:
     precision: Precision = "double"
     search: Search = "auto"
 
-    @property
-    def name(self) -> str:
-        """E.g. "native-double"."""
-        return "native-" + self.precision.replace(" ", "-")
-
     def render(self, scene: Scene, settings: Settings, progress: Progress | None = None) -> Rendering:
         """Draw `scene`.
 

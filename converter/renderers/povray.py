@@ -32,11 +32,6 @@ class PovrayRenderer:
     Colours come in steps of an 8000th, and those beyond 0..8 are clamped before samples are averaged.
     """
 
-    @property
-    def name(self) -> str:
-        """Always "povray"."""
-        return "povray"
-
     def render(self, scene: Scene, settings: Settings, progress: Progress | None = None) -> Rendering:
         """Draw `scene`.
 
