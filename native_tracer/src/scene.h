@@ -16,11 +16,16 @@
 
 namespace whitted::WHITTED_ISA {
 
+// All spheres, as seen from one point.
+template <typename Real>
+using View = std::vector<Sight<Real>>;
+
 template <typename Real>
 struct Light {
     Vector<Real> position;
     Color<Real> color;
     Real a, b, c;  // dimmed by 1 / (a + b d + c d^2) at distance d
+    View<Real> view;
 };
 
 template <typename Real>
@@ -73,6 +78,7 @@ void merge(Mask<Real> mask, const Surface<Real>& other, Surface<Real>& surface) 
 template <typename Real>
 struct Scene {
     Color<Real> ambient, background;
+    View<Real> eye_view;
     std::vector<Light<Real>> lights;
     std::vector<Pigment<Real>> pigments;
     std::vector<Object<Real>> objects;
@@ -84,9 +90,10 @@ struct Scene {
     Scene(const Scene&) = delete;  // objects point to pigments
 
     // The nearest hit of each ray; of objects at the same distance, the first of the file.
-    Hits<Real> nearest_hit(const Rays<Real>& rays) const {
+    Hits<Real> nearest_hit(const Rays<Real>& rays, const View<Real>* view) const {
         Hits<Real> hits;
-        for_each_crossing(rays, [&](Indices<Real> object, const Crossing<Real>& crossing) {
+        const auto may_hit = [&](std::size_t sphere) { return !view || any((*view)[sphere].may_be_hit(rays.direction)); };
+        for_each_crossing(rays, may_hit, [&](Indices<Real> object, const Crossing<Real>& crossing) {
             const Mask<Real> nearer = (crossing.t < hits.t) | ((crossing.t <= hits.t) & (object < hits.object));
             hits.t = select(nearer, crossing.t, hits.t);
             hits.object = select(nearer, object, hits.object);
@@ -98,10 +105,12 @@ struct Scene {
     }
 
     // An object that is in the way of each ray before `distance`, or -1: nothing is; for the rays in `wanted`.
-    Indices<Real> blocker(const Rays<Real>& rays, Lanes<Real> distance, Mask<Real> wanted) const {
+    Indices<Real> blocker(const Rays<Real>& rays, const Light<Real>& light, Lanes<Real> distance,
+                          Mask<Real> wanted) const {
         Indices<Real> blocker = -1;
         Mask<Real> open = wanted;
-        for_each_crossing(rays, [&](Indices<Real> object, const Crossing<Real>& crossing) {
+        const auto may_hit = [&](std::size_t sphere) { return any(open & light.view[sphere].may_block(rays, distance)); };
+        for_each_crossing(rays, may_hit, [&](Indices<Real> object, const Crossing<Real>& crossing) {
             const Mask<Real> blocked = open & (crossing.t < distance);
             blocker = select(blocked, object, blocker);
             open &= ~blocked;
@@ -113,11 +122,11 @@ struct Scene {
  private:
     // Calls visit(object, crossing) for the objects that some ray crosses, until it returns false: the one place that
     // knows how the objects are searched.
-    template <typename Visit>
-    [[gnu::always_inline]] void for_each_crossing(const Rays<Real>& rays, Visit visit) const {
+    template <typename MayHit, typename Visit>
+    [[gnu::always_inline]] void for_each_crossing(const Rays<Real>& rays, MayHit may_hit, Visit visit) const {
         Crossing<Real> crossing;
-        for (const Sphere<Real>& sphere : spheres) {
-            if (find_crossing(sphere, rays, crossing) && !visit(sphere.object, crossing)) {
+        for (std::size_t i = 0; i < spheres.size(); ++i) {
+            if (may_hit(i) && find_crossing(spheres[i], rays, crossing) && !visit(spheres[i].object, crossing)) {
                 return;
             }
         }
@@ -146,7 +155,7 @@ Scene<Real>::Scene(const SceneDescription& description)
     const auto real = [](double value) { return static_cast<Real>(value); };
     for (const LightDescription& light : description.lights) {
         lights.push_back({vector_of<Real>(light.position), vector_of<Real>(light.color), real(light.attenuation[0]),
-                          real(light.attenuation[1]), real(light.attenuation[2])});
+                          real(light.attenuation[1]), real(light.attenuation[2]), {}});
     }
     for (const PigmentDescription& pigment : description.pigments) {
         pigments.push_back(pigment_of<Real>(pigment));
@@ -169,6 +178,17 @@ Scene<Real>::Scene(const SceneDescription& description)
             }
             polyhedra.push_back({patch, static_cast<int>(planes.size()), index});
         }
+    }
+    const auto view_from = [&](const Vector<Real>& point) {
+        View<Real> view;
+        for (const Sphere<Real>& sphere : spheres) {
+            view.emplace_back(sphere, point);
+        }
+        return view;
+    };
+    eye_view = view_from(vector_of<Real>(description.camera.eye));
+    for (Light<Real>& light : lights) {
+        light.view = view_from(light.position);
     }
 }
 

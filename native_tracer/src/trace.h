@@ -54,7 +54,7 @@ class Tracer {
     // the same order on every processor.
     static constexpr std::size_t batch_size = 64;
 
-    void trace_group(const Group<Real>& group);
+    void trace_group(const Group<Real>& group, const View<Real>* view = nullptr);
     Surface<Real> surface_at(const Rays<Real>& rays, const Hits<Real>& hits) const;
     Color<L> local_color(const Group<Real>& group, const Hits<Real>& hits, const Surface<Real>& surface);
     L highlight(const Rays<Real>& rays, const Hits<Real>& hits, const Surface<Real>& surface, const Vector<L>& to_light,
@@ -90,7 +90,7 @@ bool Tracer<Real, Observer>::trace(PrimaryRays primary_rays, Color<Sum>* sums, R
             do {
                 Group<Real> group = primary_rays.next();
                 observer_.primary(group);
-                trace_group(group);
+                trace_group(group, &scene_.eye_view);
                 traced += static_cast<std::size_t>(count(group.active));
             } while (!primary_rays.done() && (traced < batch_size || !primary_rays.begins_row()));
             counts.primary += traced;
@@ -110,8 +110,8 @@ bool Tracer<Real, Observer>::trace(PrimaryRays primary_rays, Color<Sum>* sums, R
 
 // Traces a ray in each lane, and leaves those that follow from them on the stack.
 template <typename Real, typename Observer>
-void Tracer<Real, Observer>::trace_group(const Group<Real>& group) {
-    const Hits<Real> hits = scene_.nearest_hit(group.rays);
+void Tracer<Real, Observer>::trace_group(const Group<Real>& group, const View<Real>* view) {
+    const Hits<Real> hits = scene_.nearest_hit(group.rays, view);
     Color<L> color(scene_.background);
     if (any(group.active & (hits.object >= 0))) {
         const Surface<Real> surface = surface_at(group.rays, hits);
@@ -198,7 +198,7 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
         if (any(faces)) {
             counts_->shadow += static_cast<std::uint64_t>(count(faces));
             shadow_rays.direction = to_light;
-            blocker = scene_.blocker(shadow_rays, distance, faces);
+            blocker = scene_.blocker(shadow_rays, light, distance, faces);
         }
         const Mask<Real> lit = faces & (blocker < 0);
         if (!Observer::observes && !any(lit)) {
