@@ -192,6 +192,8 @@ def a_pane_of_glass(scene, pigment, _):
         (a_ball((1.01, 5, 0), 1), False),
         (a_ball((0, 12, 0), 1), False),  # behind the light
         (a_ball((0, 9, 0), 3), True),  # the light stands within
+        (a_ball((0, 7, 0), 7.01), False),  # and so does the floor
+        (a_ball((0, 5, 0), 100), False),
         (a_pane_of_glass, True),
     ],
 )
@@ -199,6 +201,15 @@ def test_whatever_stands_before_the_light_blocks_it(precision, blocker, blocked)
     ray = floor_seen_at((0, 0), red, {"kd": 1}, precision, [ABOVE], objects=[blocker])
     assert ray["hit"]["lights"][0]["shadowed_by"] == (1 if blocked else None)
     assert (ray["local"] == BLACK) == blocked
+
+
+def test_small_ball_far_from_the_light_blocks_it(precision):
+    # Seen from the light, the ball's radius is lost in the rounding of its distance.
+    radius = 2.0**-7
+    light = ((0, 4096, 0), WHITE, CONSTANT)
+    for x, blocker in [(radius / 2, 1), (0.9 * radius, 1), (1.1 * radius, None)]:
+        ray = floor_seen_at((x, 0), red, {"kd": 1}, precision, [light], objects=[a_ball((0, 2, 0), radius)])
+        assert ray["hit"]["lights"][0]["shadowed_by"] == blocker
 
 
 @pytest.mark.parametrize(

@@ -29,11 +29,12 @@ class PrimaryRays {
     // The next rays of the row, as many as there are lanes and pixels left.
     Group<Real> next() {
         using L = Lanes<Real>;
-        const L columns = L(static_cast<Real>(column_)) + L::gather([](int lane) { return static_cast<Real>(lane); });
+        const L columns = L(static_cast<Real>(column_)) + L::numbers();
         const L rows = static_cast<Real>(row_);
         Group<Real> group;
         group.rays.origin = Vector<L>(camera_.eye());
-        group.rays.direction = camera_.directions(columns + L(offset(sample_ % grid_)), rows + L(offset(sample_ / grid_)));
+        group.rays.direction =
+            camera_.directions(columns + L(offset(sample_ % grid_)), rows + L(offset(sample_ / grid_)));
         group.rays.t_min = Real(0);
         group.rays.object = group.rays.patch = -1;
         group.rays.inside = Mask<Real>::none();
@@ -61,9 +62,7 @@ class PrimaryRays {
     }
 
     // Of a place in the grid from its pixel's top-left corner, across or down.
-    Real offset(int place) const {
-        return (static_cast<Real>(place) + Real(0.5)) / static_cast<Real>(grid_) - shift_;
-    }
+    Real offset(int place) const { return (static_cast<Real>(place) + Real(0.5)) / static_cast<Real>(grid_) - shift_; }
 
     const Camera<Real>& camera_;
     const Tile tile_;
@@ -83,7 +82,7 @@ class RealKernel final : public Kernel {
         Unobserved unobserved;
         Tracer<Real, Unobserved> tracer(scene_, settings_, unobserved);
         using Sum = typename Tracer<Real, Unobserved>::Sum;
-        std::array<Color<Sum>, tile_size * tile_size> sums;
+        std::array<Color<Sum>, tile_width * tile_height> sums;
         sums.fill({0, 0, 0});
         if (!tracer.trace(PrimaryRays<Real>(camera_, settings_, tile), sums.data(), counts, stop)) {
             return false;

@@ -31,8 +31,8 @@ Lanes<Real> rounding_error(const Vector<Lanes<Real>>& point, Lanes<Real> t) {
 template <typename Real>
 struct Group {
     Rays<Real> rays;
-    Lanes<Real> weight;    // what a ray's colour counts for in its pixel
-    Indices<Real> depth;   // bounces before it
+    Lanes<Real> weight;   // what a ray's colour counts for in its pixel
+    Indices<Real> depth;  // bounces before it
     Indices<Real> pixel;
     Indices<Real> record;  // what the observer knows it by
     Mask<Real> active;

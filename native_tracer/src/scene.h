@@ -92,7 +92,9 @@ struct Scene {
     // The nearest hit of each ray; of objects at the same distance, the first of the file.
     Hits<Real> nearest_hit(const Rays<Real>& rays, const View<Real>* view) const {
         Hits<Real> hits;
-        const auto may_hit = [&](std::size_t sphere) { return !view || any((*view)[sphere].may_be_hit(rays.direction)); };
+        const auto may_hit = [&](std::size_t sphere) {
+            return !view || any((*view)[sphere].may_be_hit(rays.direction));
+        };
         for_each_crossing(rays, may_hit, [&](Indices<Real> object, const Crossing<Real>& crossing) {
             const Mask<Real> nearer = (crossing.t < hits.t) | ((crossing.t <= hits.t) & (object < hits.object));
             hits.t = select(nearer, crossing.t, hits.t);
@@ -109,7 +111,9 @@ struct Scene {
                           Mask<Real> wanted) const {
         Indices<Real> blocker = -1;
         Mask<Real> open = wanted;
-        const auto may_hit = [&](std::size_t sphere) { return any(open & light.view[sphere].may_block(rays, distance)); };
+        const auto may_hit = [&](std::size_t sphere) {
+            return any(open & light.view[sphere].may_block(rays, distance));
+        };
         for_each_crossing(rays, may_hit, [&](Indices<Real> object, const Crossing<Real>& crossing) {
             const Mask<Real> blocked = open & (crossing.t < distance);
             blocker = select(blocked, object, blocker);
@@ -154,8 +158,12 @@ Scene<Real>::Scene(const SceneDescription& description)
     : ambient(vector_of<Real>(description.ambient)), background(vector_of<Real>(description.background)) {
     const auto real = [](double value) { return static_cast<Real>(value); };
     for (const LightDescription& light : description.lights) {
-        lights.push_back({vector_of<Real>(light.position), vector_of<Real>(light.color), real(light.attenuation[0]),
-                          real(light.attenuation[1]), real(light.attenuation[2]), {}});
+        lights.push_back({vector_of<Real>(light.position),
+                          vector_of<Real>(light.color),
+                          real(light.attenuation[0]),
+                          real(light.attenuation[1]),
+                          real(light.attenuation[2]),
+                          {}});
     }
     for (const PigmentDescription& pigment : description.pigments) {
         pigments.push_back(pigment_of<Real>(pigment));

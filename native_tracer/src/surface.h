@@ -106,10 +106,10 @@ template <typename Real>
     return true;
 }
 
-// A sphere as seen from a point, such as the eye or a light: tells most lines through the point that miss the sphere, for
-// less than half of what find_crossing() costs. Such a line, of direction d, passes the centre at a distance whose square
-// is g.g - (g.d)^2, with g = center - point. That difference cancels for a small sphere far away, so it only counts where
-// it is larger than its error.
+// A sphere as seen from a point, such as the eye or a light: tells most lines through the point that miss the sphere,
+// for less than half of what find_crossing() costs. Such a line, of direction d, passes the centre at a distance whose
+// square is g.g - (g.d)^2, with g = center - point. That difference cancels for a small sphere far away, so it only
+// counts where it is larger than its error.
 template <typename Real>
 class Sight {
  public:
@@ -129,7 +129,7 @@ class Sight {
     Mask<Real> may_block(const Rays<Real>& rays, L distance) const {
         if (encloses_) {
             const Vector<L> g = Vector<L>(center_) - rays.origin;
-            return dot(g, g) >= L(inside2_);
+            return ~(dot(g, g) < L(inside2_));
         }
         // The rays pass the point at some distance, for their directions are rounded.
         return may_meet(rays.direction, L(slack) * distance * distance);
@@ -140,7 +140,7 @@ class Sight {
 
     Mask<Real> may_meet(const Vector<L>& direction, L error2) const {
         const L closest = dot(Vector<L>(g_), direction);
-        return closest * closest + error2 >= L(outside2_);
+        return ~(closest * closest + error2 < L(outside2_));  // also where a square is too large for a number
     }
 
     Vector<Real> center_, g_;

@@ -274,6 +274,7 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
     successors.rays.patch = hits.patch;
     successors.depth = group.depth + Indices<Real>(1);
     successors.pixel = group.pixel;
+    successors.record = group.record;
     const auto push = [&](RayKind kind, const Vector<L>& along, Mask<Real> inside, L weight, Mask<Real> followed,
                           RayStack<Real>& stack, std::uint64_t& counter) {
         successors.rays.direction = along;
@@ -291,9 +292,8 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
         push(RayKind::transmitted, bent, bent_inside, transmitted_weight, transmits, transmitted_,
              counts_->transmitted);
     }
-    for_each_distinct(successors.depth, reflects | transmits, [&](int depth, int, Mask<Real>) {
-        counts_->deepest = std::max(counts_->deepest, depth);
-    });
+    for_each_distinct(successors.depth, reflects | transmits,
+                      [&](int depth, int, Mask<Real>) { counts_->deepest = std::max(counts_->deepest, depth); });
 }
 
 // Which of the rays that would follow, with the given weights, are traced.
