@@ -192,6 +192,9 @@ def a_pane_of_glass(scene, pigment, _):
         (a_ball((1.01, 5, 0), 1), False),
         (a_ball((0, 12, 0), 1), False),  # behind the light
         (a_ball((0, 9, 0), 3), True),  # the light stands within
+        (a_ball((0, 7, 0), 7.01), False),  # and so does the floor
+        (a_ball((0, 5, 0), 100), False),
+        (a_ball((0, 0, 0), 6), True),  # the floor alone
         (a_pane_of_glass, True),
     ],
 )
@@ -199,6 +202,18 @@ def test_whatever_stands_before_the_light_blocks_it(precision, blocker, blocked)
     ray = floor_seen_at((0, 0), red, {"kd": 1}, precision, [ABOVE], objects=[blocker])
     assert ray["hit"]["lights"][0]["shadowed_by"] == (1 if blocked else None)
     assert (ray["local"] == BLACK) == blocked
+
+
+def test_small_ball_far_from_the_light_blocks_it(precision):
+    # Seen from the light, the ball's radius is lost in the rounding of its distance.
+    light = (3011.7, 2543.3, -1507.9)
+    radius, center = 2.0**-9, tuple(2 * c / math.hypot(*light) for c in light)
+    aslant = math.sqrt(1 - (center[0] / 2) ** 2)  # between steps along the floor and across the way to the light
+    for step in (-15, -11, *range(-9, 10), 11, 15):
+        x = step / 10 * radius / aslant
+        lights, objects = [(light, WHITE, CONSTANT)], [a_ball(center, radius)]
+        ray = floor_seen_at((x, 0), red, {"kd": 1}, precision, lights, objects=objects)
+        assert ray["hit"]["lights"][0]["shadowed_by"] == (1 if abs(step) < 10 else None)
 
 
 @pytest.mark.parametrize(

@@ -29,9 +29,9 @@ class Camera {
           forward_(normalize(vector_of<Real>(difference(camera.look_at, camera.eye)))),
           right_(normalize(cross(forward_, vector_of<Real>(camera.up)))),
           up_(cross(right_, forward_)),
-          tangent_(std::tan(static_cast<Real>(camera.fovy) * std::numbers::pi_v<Real> / 360)),
           width_(static_cast<Real>(width)),
-          height_(static_cast<Real>(height)) {}
+          height_(static_cast<Real>(height)),
+          scale_(std::tan(static_cast<Real>(camera.fovy) * std::numbers::pi_v<Real> / 360) / height_) {}
 
     const Vector<Real>& eye() const { return eye_; }
 
@@ -39,14 +39,15 @@ class Camera {
     // window is 2 tan(fovy/2) high, and as wide as square pixels make it.
     Vector<Lanes<Real>> directions(Lanes<Real> column, Lanes<Real> row) const {
         using L = Lanes<Real>;
-        const L x = (L(2) * column / L(width_) - L(1)) * L(tangent_ * width_ / height_);
-        const L y = (L(1) - L(2) * row / L(height_)) * L(tangent_);
+        const L x = (L(2) * column - L(width_)) * L(scale_);
+        const L y = (L(height_) - L(2) * row) * L(scale_);
         return normalize(Vector<L>(forward_) + x * Vector<L>(right_) + y * Vector<L>(up_));
     }
 
  private:
     Vector<Real> eye_, forward_, right_, up_;
-    Real tangent_, width_, height_;
+    Real width_, height_;
+    Real scale_;  // half a pixel, on the plane at distance 1
 };
 
 }  // namespace whitted::WHITTED_ISA

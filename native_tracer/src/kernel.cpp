@@ -10,7 +10,8 @@
 
 namespace whitted::WHITTED_ISA {
 
-// The rays of a rectangle of pixels: row by row, in each pixel a grid of grid x grid rays.
+// The rays of a rectangle of pixels: row by row, in each a grid of grid x grid rays a pixel, one place of it after the
+// other.
 template <typename Real>
 class PrimaryRays {
  public:
@@ -20,65 +21,55 @@ class PrimaryRays {
           grid_(settings.grid),
           shift_(settings.corner ? Real(0.5) : Real(0)),
           column_(tile.left),
-          row_(tile.top) {
-        place_sample();
-    }
+          row_(tile.top) {}
 
-    // The next rays, as many as there are lanes and rays left; false when there are none.
-    bool next(Group<Real>& group) {
-        Real columns[lane_count<Real>], rows[lane_count<Real>];
-        group.count = 0;
-        for (int lane = 0; lane < lane_count<Real>; ++lane) {
-            columns[lane] = static_cast<Real>(column_) + sample_x_;
-            rows[lane] = static_cast<Real>(row_) + sample_y_;
-            group.pixel[lane] = pixel_;
-            if (row_ < tile_.bottom) {
-                ++group.count;
-                advance();
-            }
-        }
+    bool done() const { return row_ == tile_.bottom; }
+    bool begins_row() const { return column_ == tile_.left && sample_ == 0; }
+
+    // The next rays of the row, as many as there are lanes and pixels left.
+    Group<Real> next() {
         using L = Lanes<Real>;
+        const L columns = L(static_cast<Real>(column_)) + L::numbers();
+        const L rows = static_cast<Real>(row_);
+        Group<Real> group;
         group.rays.origin = Vector<L>(camera_.eye());
-        group.rays.direction = camera_.directions(L::gather([&](int lane) { return columns[lane]; }),
-                                                  L::gather([&](int lane) { return rows[lane]; }));
+        group.rays.direction =
+            camera_.directions(columns + L(offset(sample_ % grid_)), rows + L(offset(sample_ / grid_)));
         group.rays.t_min = Real(0);
         group.rays.object = group.rays.patch = -1;
         group.rays.inside = Mask<Real>::none();
-        group.depth = 0;
         group.weight = Real(1);
-        group.active = Mask<Real>::first(group.count);
-        return group.count > 0;
+        group.depth = 0;
+        group.pixel = Indices<Real>((row_ - tile_.top) * (tile_.right - tile_.left) + column_ - tile_.left) +
+                      Indices<Real>::numbers();
+        group.record = -1;
+        group.active = Mask<Real>::first(tile_.right - column_);
+        advance();
+        return group;
     }
 
  private:
     void advance() {
-        if (grid_ > 1) {
-            sample_ = (sample_ + 1) % (grid_ * grid_);
-            place_sample();
-        }
-        if (sample_ > 0) {
+        column_ += lane_count<Real>;
+        if (column_ < tile_.right) {
             return;
         }
-        ++pixel_;
-        if (++column_ == tile_.right) {
-            column_ = tile_.left;
+        column_ = tile_.left;
+        if (++sample_ == grid_ * grid_) {
+            sample_ = 0;
             ++row_;
         }
     }
 
-    void place_sample() {
-        sample_x_ = (static_cast<Real>(sample_ % grid_) + Real(0.5)) / static_cast<Real>(grid_) - shift_;
-        sample_y_ = (static_cast<Real>(sample_ / grid_) + Real(0.5)) / static_cast<Real>(grid_) - shift_;
-    }
+    // Of a place in the grid from its pixel's top-left corner, across or down.
+    Real offset(int place) const { return (static_cast<Real>(place) + Real(0.5)) / static_cast<Real>(grid_) - shift_; }
 
     const Camera<Real>& camera_;
     const Tile tile_;
     const int grid_;
     const Real shift_;
     int column_, row_;
-    int pixel_ = 0;  // counted within the tile
-    int sample_ = 0;
-    Real sample_x_, sample_y_;  // its place in its pixel
+    int sample_ = 0;  // a place in the grid
 };
 
 template <typename Real>
@@ -91,7 +82,7 @@ class RealKernel final : public Kernel {
         Unobserved unobserved;
         Tracer<Real, Unobserved> tracer(scene_, settings_, unobserved);
         using Sum = typename Tracer<Real, Unobserved>::Sum;
-        std::array<Color<Sum>, tile_size * tile_size> sums;
+        std::array<Color<Sum>, tile_width * tile_height> sums;
         sums.fill({0, 0, 0});
         if (!tracer.trace(PrimaryRays<Real>(camera_, settings_, tile), sums.data(), counts, stop)) {
             return false;

@@ -17,7 +17,8 @@ struct Tile {
     int left, top, right, bottom;
 };
 
-inline constexpr int tile_size = 32;
+// Wide, so that registers full of neighbouring pixels fit in, and not too small, for its last rays leave lanes empty.
+inline constexpr int tile_width = 64, tile_height = 32;
 
 class Kernel {
  public:

@@ -1,137 +1,71 @@
-// Lanes<Real>: as many real numbers as one register of the processor holds, computed with as if they were one.
+// Lanes<Real>: a few registers full of real numbers, computed with as if they were one.
 //
 // Rays are traced in small groups, one ray to a lane. Lane i of a result depends on lane i of the operands alone, and
 // every operation is the one IEEE 754 defines, so that a picture's bytes do not depend on how many lanes there are.
-// The registers are the vector types of GCC and Clang; long double, which no register holds twice, has a single lane.
 
 #pragma once
 
 #include <bit>
 #include <cmath>
-#include <cstdint>
-#include <limits>
+#include <cstring>
 #include <type_traits>
-#if defined(__x86_64__)
-#include <immintrin.h>
-#endif
 
 #include "isa.h"
+#include "register.h"
 
 namespace whitted::WHITTED_ISA {
 
-#if defined(__AVX512F__)
-inline constexpr int register_bytes = 64;
-#elif defined(__AVX2__)
-inline constexpr int register_bytes = 32;
-#else
-inline constexpr int register_bytes = 16;
-#endif
-
-// ---- What a register holds for each real type ---------------------------------------------------------------------
+// Two registers, so that the processor has something to do while a square root or a quotient is not ready.
+template <typename Real>
+inline constexpr int register_count = std::is_same_v<Real, long double> ? 1 : 2;
 
 template <typename Real>
-struct Register;
+inline constexpr int lane_count = register_count<Real> * Register<Real>::lanes;
 
-template <>
-struct Register<float> {
-    using Integer = std::int32_t;
-    typedef float Reals __attribute__((vector_size(register_bytes)));
-    typedef Integer Integers __attribute__((vector_size(register_bytes)));
-    using Truths = Integers;  // 0 or -1
-};
-
-template <>
-struct Register<double> {
-    using Integer = std::int64_t;
-    typedef double Reals __attribute__((vector_size(register_bytes)));
-    typedef Integer Integers __attribute__((vector_size(register_bytes)));
-    using Truths = Integers;  // 0 or -1
-};
-
-template <>
-struct Register<long double> {
-    using Integer = std::int64_t;
-    using Reals = long double;
-    using Integers = Integer;
-    using Truths = bool;
-};
-
-template <typename Real>
-inline constexpr int lane_count =
-    std::is_same_v<Real, long double> ? 1 : register_bytes / static_cast<int>(sizeof(Real));
+// The operation on each register of the operands.
+template <typename Result, typename Operation, typename... Operands>
+[[gnu::always_inline]] inline Result each(Operation operation, const Operands&... operands) {
+    Result result;
+    result.value[0] = operation(operands.value[0]...);
+    if constexpr (sizeof(result.value) > sizeof(result.value[0])) {
+        result.value[1] = operation(operands.value[1]...);
+    }
+    return result;
+}
 
 // ---- Truth values, integers and real numbers ----------------------------------------------------------------------
 
 template <typename Real>
 struct Mask {
-    using Truths = typename Register<Real>::Truths;
-    Truths value;
+    using R = Register<Real>;
+    using Truths = typename R::Truths;
+    Truths value[register_count<Real>];
 
-    static Mask none() { return {Truths{}}; }
-    friend Mask operator&(Mask a, Mask b) { return {static_cast<Truths>(a.value & b.value)}; }
-    friend Mask operator|(Mask a, Mask b) { return {static_cast<Truths>(a.value | b.value)}; }
-    friend Mask operator^(Mask a, Mask b) { return {static_cast<Truths>(a.value ^ b.value)}; }
+    static Mask none() {
+        return each<Mask>([] { return Truths{}; });
+    }
+    friend Mask operator&(Mask a, Mask b) {
+        return each<Mask>([](Truths x, Truths y) { return static_cast<Truths>(x & y); }, a, b);
+    }
+    friend Mask operator|(Mask a, Mask b) {
+        return each<Mask>([](Truths x, Truths y) { return static_cast<Truths>(x | y); }, a, b);
+    }
+    friend Mask operator^(Mask a, Mask b) {
+        return each<Mask>([](Truths x, Truths y) { return static_cast<Truths>(x ^ y); }, a, b);
+    }
     friend Mask operator~(Mask a) {
-        if constexpr (lane_count<Real> == 1) {
-            return {!a.value};
-        } else {
-            return {~a.value};
-        }
+        return each<Mask>([](Truths x) { return R::negation(x); }, a);
     }
     Mask& operator|=(Mask other) { return *this = *this | other; }
     Mask& operator&=(Mask other) { return *this = *this & other; }
 
-    bool operator[](int lane) const {
-        if constexpr (lane_count<Real> == 1) {
-            return value;
-        } else {
-            return value[lane] != 0;
-        }
-    }
+    bool operator[](int lane) const { return (bits() >> lane & 1U) != 0; }
 
     // Bit i is lane i.
     unsigned bits() const {
-        if constexpr (lane_count<Real> == 1) {
-            return value ? 1U : 0U;
-        } else {
-#if defined(__AVX512F__)
-            if constexpr (sizeof(Real) == 8) {
-                return _mm512_movepi64_mask((__m512i)value);
-            } else {
-                return _mm512_movepi32_mask((__m512i)value);
-            }
-#elif defined(__AVX2__)
-            if constexpr (sizeof(Real) == 8) {
-                return static_cast<unsigned>(_mm256_movemask_pd((__m256d)value));
-            } else {
-                return static_cast<unsigned>(_mm256_movemask_ps((__m256)value));
-            }
-#elif defined(__SSE2__)
-            if constexpr (sizeof(Real) == 8) {
-                return static_cast<unsigned>(_mm_movemask_pd((__m128d)value));
-            } else {
-                return static_cast<unsigned>(_mm_movemask_ps((__m128)value));
-            }
-#else
-            unsigned result = 0;
-            for (int lane = 0; lane < lane_count<Real>; ++lane) {
-                result |= (value[lane] != 0 ? 1U : 0U) << lane;
-            }
-            return result;
-#endif
-        }
-    }
-
-    // Lane i is value_of(i).
-    template <typename ValueOf>
-    static Mask gather(ValueOf value_of) {
-        Mask result;
-        if constexpr (lane_count<Real> == 1) {
-            result.value = value_of(0);
-        } else {
-            for (int lane = 0; lane < lane_count<Real>; ++lane) {
-                result.value[lane] = value_of(lane) ? -1 : 0;
-            }
+        unsigned result = R::bits(value[0]);
+        for (int i = 1; i < register_count<Real>; ++i) {
+            result |= R::bits(value[i]) << (i * R::lanes);
         }
         return result;
     }
@@ -142,12 +76,16 @@ struct Mask {
 
 template <typename Real>
 bool any(Mask<Real> mask) {
-    return mask.bits() != 0;
+    auto some = mask.value[0];
+    for (int i = 1; i < register_count<Real>; ++i) {
+        some |= mask.value[i];
+    }
+    return Register<Real>::bits(some) != 0;
 }
 
 template <typename Real>
 bool all(Mask<Real> mask) {
-    return mask.bits() == (1U << lane_count<Real>)-1U;
+    return !any(~mask);
 }
 
 template <typename Real>
@@ -157,85 +95,116 @@ int count(Mask<Real> mask) {
 
 template <typename Real>
 struct Indices {
-    using Integer = typename Register<Real>::Integer;
-    typename Register<Real>::Integers value;
+    using R = Register<Real>;
+    using Integer = typename R::Integer;
+    using Integers = typename R::Integers;
+    Integers value[register_count<Real>];
 
     Indices() = default;
-    Indices(Integer same) : value(typename Register<Real>::Integers{} + same) {}
-    explicit Indices(std::in_place_t, typename Register<Real>::Integers v) : value(v) {}
+    Indices(Integer same) : Indices(each<Indices>([same] { return Integers{} + same; })) {}
 
     int operator[](int lane) const {
         if constexpr (lane_count<Real> == 1) {
-            return static_cast<int>(value);
+            return static_cast<int>(value[0]);
         } else {
-            return static_cast<int>(value[lane]);
+            return static_cast<int>(value[lane / R::lanes][lane % R::lanes]);
         }
     }
-    friend Mask<Real> operator==(Indices a, Indices b) { return {a.value == b.value}; }
-    friend Mask<Real> operator<(Indices a, Indices b) { return {a.value < b.value}; }
-    friend Mask<Real> operator>=(Indices a, Indices b) { return {a.value >= b.value}; }
+    friend Indices operator+(Indices a, Indices b) {
+        return each<Indices>([](Integers x, Integers y) { return x + y; }, a, b);
+    }
+    friend Mask<Real> operator==(Indices a, Indices b) {
+        return each<Mask<Real>>([](Integers x, Integers y) { return R::equal(x, y); }, a, b);
+    }
+    friend Mask<Real> operator<(Indices a, Indices b) {
+        return each<Mask<Real>>([](Integers x, Integers y) { return R::less(x, y); }, a, b);
+    }
+    friend Mask<Real> operator>=(Indices a, Indices b) { return ~(a < b); }
 
     // Lane i is value_of(i).
     template <typename ValueOf>
     static Indices gather(ValueOf value_of) {
-        Indices result;
-        if constexpr (lane_count<Real> == 1) {
-            result.value = value_of(0);
-        } else {
-            for (int lane = 0; lane < lane_count<Real>; ++lane) {
-                result.value[lane] = value_of(lane);
-            }
+        Integer values[lane_count<Real>];
+        for (int lane = 0; lane < lane_count<Real>; ++lane) {
+            values[lane] = value_of(lane);
         }
+        Indices result;
+        std::memcpy(&result, values, sizeof(result));
         return result;
+    }
+
+    // 0, 1, 2 and so on.
+    static Indices numbers() {
+        return gather([](int lane) { return lane; });
     }
 };
 
 template <typename Real>
 Mask<Real> Mask<Real>::first(int count) {
-    return Indices<Real>::gather([](int lane) { return lane; }) < Indices<Real>(count);
+    return Indices<Real>::numbers() < Indices<Real>(count);
 }
 
 template <typename Real>
 struct Lanes {
-    using Reals = typename Register<Real>::Reals;
-    Reals value;
+    using R = Register<Real>;
+    using Reals = typename R::Reals;
+    Reals value[register_count<Real>];
 
     Lanes() = default;
-    Lanes(Real same) : value(same - Reals{}) {}  // x - 0 is x, whatever its sign
-    explicit Lanes(std::in_place_t, Reals v) : value(v) {}
+    // x - 0 is x, whatever its sign.
+    Lanes(Real same) : Lanes(each<Lanes>([same] { return same - Reals{}; })) {}
 
     Real operator[](int lane) const {
         if constexpr (lane_count<Real> == 1) {
-            return value;
+            return value[0];
         } else {
-            return value[lane];
+            return value[lane / R::lanes][lane % R::lanes];
         }
     }
 
-    friend Lanes operator+(Lanes a, Lanes b) { return Lanes(std::in_place, a.value + b.value); }
-    friend Lanes operator-(Lanes a, Lanes b) { return Lanes(std::in_place, a.value - b.value); }
-    friend Lanes operator*(Lanes a, Lanes b) { return Lanes(std::in_place, a.value * b.value); }
-    friend Lanes operator/(Lanes a, Lanes b) { return Lanes(std::in_place, a.value / b.value); }
-    friend Lanes operator-(Lanes a) { return Lanes(std::in_place, -a.value); }
-    friend Mask<Real> operator!=(Lanes a, Lanes b) { return {a.value != b.value}; }
-    friend Mask<Real> operator<(Lanes a, Lanes b) { return {a.value < b.value}; }
-    friend Mask<Real> operator>(Lanes a, Lanes b) { return {a.value > b.value}; }
-    friend Mask<Real> operator<=(Lanes a, Lanes b) { return {a.value <= b.value}; }
-    friend Mask<Real> operator>=(Lanes a, Lanes b) { return {a.value >= b.value}; }
+    friend Lanes operator+(Lanes a, Lanes b) {
+        return each<Lanes>([](Reals x, Reals y) { return x + y; }, a, b);
+    }
+    friend Lanes operator-(Lanes a, Lanes b) {
+        return each<Lanes>([](Reals x, Reals y) { return x - y; }, a, b);
+    }
+    friend Lanes operator*(Lanes a, Lanes b) {
+        return each<Lanes>([](Reals x, Reals y) { return x * y; }, a, b);
+    }
+    friend Lanes operator/(Lanes a, Lanes b) {
+        return each<Lanes>([](Reals x, Reals y) { return x / y; }, a, b);
+    }
+    friend Lanes operator-(Lanes a) {
+        return each<Lanes>([](Reals x) { return -x; }, a);
+    }
+    friend Mask<Real> operator!=(Lanes a, Lanes b) {
+        return each<Mask<Real>>([](Reals x, Reals y) { return R::not_equal(x, y); }, a, b);
+    }
+    friend Mask<Real> operator<(Lanes a, Lanes b) {
+        return each<Mask<Real>>([](Reals x, Reals y) { return R::less(x, y); }, a, b);
+    }
+    friend Mask<Real> operator<=(Lanes a, Lanes b) {
+        return each<Mask<Real>>([](Reals x, Reals y) { return R::less_equal(x, y); }, a, b);
+    }
+    friend Mask<Real> operator>(Lanes a, Lanes b) { return b < a; }
+    friend Mask<Real> operator>=(Lanes a, Lanes b) { return b <= a; }
     Lanes& operator+=(Lanes other) { return *this = *this + other; }
 
     // Lane i is value_of(i).
     template <typename ValueOf>
     static Lanes gather(ValueOf value_of) {
-        Lanes result;
-        if constexpr (lane_count<Real> == 1) {
-            result.value = value_of(0);
-        } else {
-            for (int lane = 0; lane < lane_count<Real>; ++lane) {
-                result.value[lane] = value_of(lane);
-            }
+        Real values[lane_count<Real>];
+        for (int lane = 0; lane < lane_count<Real>; ++lane) {
+            values[lane] = value_of(lane);
         }
+        Lanes result;
+        std::memcpy(&result, values, sizeof(result));
         return result;
+    }
+
+    // 0, 1, 2 and so on.
+    static Lanes numbers() {
+        return gather([](int lane) { return static_cast<Real>(lane); });
     }
 };
 
@@ -244,12 +213,17 @@ struct Lanes {
 // Lane by lane: `a` where the mask is true, else `b`.
 template <typename Real>
 Lanes<Real> select(Mask<Real> mask, Lanes<Real> a, Lanes<Real> b) {
-    return Lanes<Real>(std::in_place, mask.value ? a.value : b.value);
+    using R = Register<Real>;
+    return each<Lanes<Real>>(
+        [](typename R::Truths m, typename R::Reals x, typename R::Reals y) { return R::select(m, x, y); }, mask, a, b);
 }
 
 template <typename Real>
 Indices<Real> select(Mask<Real> mask, Indices<Real> a, Indices<Real> b) {
-    return Indices<Real>(std::in_place, mask.value ? a.value : b.value);
+    using R = Register<Real>;
+    return each<Indices<Real>>(
+        [](typename R::Truths m, typename R::Integers x, typename R::Integers y) { return R::select(m, x, y); }, mask,
+        a, b);
 }
 
 template <typename Real>
@@ -259,53 +233,23 @@ Mask<Real> select(Mask<Real> mask, Mask<Real> a, Mask<Real> b) {
 
 template <typename Real>
 Lanes<Real> sqrt(Lanes<Real> a) {
-    if constexpr (lane_count<Real> == 1) {
-        return Lanes<Real>(std::sqrt(a.value));
-    } else {
-#if defined(__AVX512F__)
-        if constexpr (sizeof(Real) == 8) {
-            return Lanes<Real>(std::in_place, _mm512_maskz_sqrt_pd(0xFF, a.value));
-        } else {
-            return Lanes<Real>(std::in_place, _mm512_maskz_sqrt_ps(0xFFFF, a.value));
-        }
-#elif defined(__AVX2__)
-        if constexpr (sizeof(Real) == 8) {
-            return Lanes<Real>(std::in_place, _mm256_sqrt_pd(a.value));
-        } else {
-            return Lanes<Real>(std::in_place, _mm256_sqrt_ps(a.value));
-        }
-#elif defined(__SSE2__)
-        if constexpr (sizeof(Real) == 8) {
-            return Lanes<Real>(std::in_place, _mm_sqrt_pd(a.value));
-        } else {
-            return Lanes<Real>(std::in_place, _mm_sqrt_ps(a.value));
-        }
-#else
-        return Lanes<Real>::gather([&](int lane) { return std::sqrt(a[lane]); });
-#endif
-    }
+    return each<Lanes<Real>>([](auto x) { return Register<Real>::sqrt(x); }, a);
 }
 
 template <typename Real>
 Lanes<Real> floor(Lanes<Real> a) {
-#if defined(__AVX2__) && !defined(__AVX512F__)
-    if constexpr (sizeof(Real) == 8) {
-        return Lanes<Real>(std::in_place, _mm256_floor_pd(a.value));
-    } else if constexpr (sizeof(Real) == 4) {
-        return Lanes<Real>(std::in_place, _mm256_floor_ps(a.value));
-    }
-#endif
-    return Lanes<Real>::gather([&](int lane) { return std::floor(a[lane]); });
+    return each<Lanes<Real>>([](auto x) { return Register<Real>::floor(x); }, a);
 }
 
+// `b` where one is no number.
 template <typename Real>
 Lanes<Real> min(Lanes<Real> a, Lanes<Real> b) {
-    return select(a < b, a, b);
+    return each<Lanes<Real>>([](auto x, auto y) { return Register<Real>::min(x, y); }, a, b);
 }
 
 template <typename Real>
 Lanes<Real> max(Lanes<Real> a, Lanes<Real> b) {
-    return select(a > b, a, b);
+    return each<Lanes<Real>>([](auto x, auto y) { return Register<Real>::max(x, y); }, a, b);
 }
 
 template <typename Real>
@@ -329,6 +273,38 @@ Lanes<Real> power(Lanes<Real> base, Real exponent) {
     }
     return result;
 }
+
+// ---- Between lanes and memory -------------------------------------------------------------------------------------
+
+// Fills lanes of any kind with what lies in memory one after the other.
+template <typename Lanes>
+void load(const void* from, Lanes& lanes) {
+    std::memcpy(&lanes, from, sizeof(lanes));
+}
+
+template <typename Real>
+void load(const void* from, Mask<Real>& lanes) {
+    Indices<Real> truths;
+    load(from, truths);
+    lanes = truths < Indices<Real>(0);
+}
+
+// Writes the lanes that the mask names, one after the other. What all of them would need may be overwritten.
+template <typename Real, typename Lanes>
+void pack(Mask<Real> named, const Lanes& lanes, void* to) {
+    auto* next = static_cast<char*>(to);
+    for (int i = 0; i < register_count<Real>; ++i) {
+        Register<Real>::pack(named.value[i], lanes.value[i], next);
+        next += sizeof(lanes.value[i]) / Register<Real>::lanes * std::popcount(Register<Real>::bits(named.value[i]));
+    }
+}
+
+template <typename Real>
+void pack(Mask<Real> named, const Mask<Real>& lanes, void* to) {
+    pack(named, select(lanes, Indices<Real>(-1), Indices<Real>(0)), to);
+}
+
+// ---- By value -----------------------------------------------------------------------------------------------------
 
 // Calls visit(value, lane, same) once for each distinct value among the lanes in `wanted`; `same` are the lanes that
 // have it, and `lane` is the first of them.

@@ -29,9 +29,7 @@ struct Unobserved {
     template <typename... Arguments>
     void color(const Arguments&...) {}
     template <typename... Arguments>
-    int spawned(const Arguments&...) {
-        return 0;
-    }
+    void spawned(Arguments&&...) {}
 };
 
 class Recorder {
@@ -43,17 +41,14 @@ class Recorder {
     // The group's rays are primary ones, about to be traced.
     template <typename Real>
     void primary(Group<Real>& group) {
-        for (int lane = 0; lane < group.count; ++lane) {
-            group.record[lane] = add(RayKind::primary, -1, 0, group.weight[lane], lane_of(group.rays.origin, lane),
-                                     lane_of(group.rays.direction, lane));
-        }
+        record(group, [](int) { return -1; }, RayKind::primary);
     }
 
-    // A ray follows from the one with the record `parent`; returns its own record.
+    // `successors` follow from the rays of `group` in the same lanes.
     template <typename Real>
-    int spawned(RayKind kind, int parent, const PendingRay<Real>& ray) {
-        successor(parent, kind) = Successor::traced;
-        return add(kind, parent, ray.depth, ray.weight, ray.origin, ray.direction);
+    void spawned(RayKind kind, const Group<Real>& group, Group<Real>& successors) {
+        for_each(group, successors.active, [&](int, int index) { successor(index, kind) = Successor::traced; });
+        record(successors, [&](int lane) { return group.record[lane]; }, kind);
     }
 
     template <typename Real>
@@ -116,25 +111,30 @@ class Recorder {
     // Calls visit(lane, record) for the group's rays that are among `rays`.
     template <typename Real, typename Visit>
     void for_each(const Group<Real>& group, Mask<Real> rays, Visit visit) {
-        for (int lane = 0; lane < group.count; ++lane) {
-            if (rays[lane]) {
+        for (int lane = 0; lane < lane_count<Real>; ++lane) {
+            if (group.active[lane] && rays[lane]) {
                 visit(lane, group.record[lane]);
             }
         }
     }
 
-    template <typename Real>
-    int add(RayKind kind, int parent, int depth, Real weight, const Vector<Real>& origin,
-            const Vector<Real>& direction) {
-        const int index = tree_.add();
-        RayRecord& record = tree_[index];
-        record.kind = kind;
-        record.parent = parent;
-        record.depth = depth;
-        record.weight = static_cast<double>(weight);
-        record.origin = triple(origin);
-        record.direction = triple(direction);
-        return index;
+    // Adds a record for each ray of the group; parent_of(lane) is its parent's.
+    template <typename Real, typename ParentOf>
+    void record(Group<Real>& group, ParentOf parent_of, RayKind kind) {
+        group.record = Indices<Real>::gather([&](int lane) {
+            if (!group.active[lane]) {
+                return -1;
+            }
+            const int index = tree_.add();
+            RayRecord& record = tree_[index];
+            record.kind = kind;
+            record.parent = parent_of(lane);
+            record.depth = group.depth[lane];
+            record.weight = static_cast<double>(group.weight[lane]);
+            record.origin = triple(lane_of(group.rays.origin, lane));
+            record.direction = triple(lane_of(group.rays.direction, lane));
+            return index;
+        });
     }
 
     Successor& successor(int index, RayKind kind) {

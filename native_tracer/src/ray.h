@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <cstddef>
 #include <limits>
+#include <utility>
+#include <vector>
 
 #include "vector.h"
 
@@ -25,52 +27,101 @@ Lanes<Real> rounding_error(const Vector<Lanes<Real>>& point, Lanes<Real> t) {
     return Lanes<Real>(32 * std::numeric_limits<Real>::epsilon()) * (max_norm(point) + t);
 }
 
-// A ray that waits for its turn.
-template <typename Real>
-struct PendingRay {
-    Vector<Real> origin, direction;
-    Real t_min;
-    Real weight;        // what its colour counts for in its pixel
-    int object, patch;  // what it starts on; -1: nothing
-    int depth;          // bounces before it
-    int pixel;
-    int record;  // what the observer knows it by
-    bool inside;
-
-    PendingRay() {}  // undefined, for all of it is set at once
-};
-
-// A group of rays that are traced together. Lanes from `count` on hold no ray of their own, and nobody looks at them.
+// Rays that are traced together, one to a lane. Nobody looks at the lanes that are not active.
 template <typename Real>
 struct Group {
-    static constexpr int lanes = lane_count<Real>;
-
     Rays<Real> rays;
-    Lanes<Real> weight;
+    Lanes<Real> weight;   // what a ray's colour counts for in its pixel
+    Indices<Real> depth;  // bounces before it
+    Indices<Real> pixel;
+    Indices<Real> record;  // what the observer knows it by
     Mask<Real> active;
-    int count;
-    Indices<Real> depth;
-    int pixel[lanes], record[lanes];
+};
 
-    // The first of `available` rays, as many as there are lanes; lanes without a ray repeat the last one.
-    void take(const PendingRay<Real>* pending, std::size_t available) {
-        count = static_cast<int>(std::min<std::size_t>(available, lanes));
-        const PendingRay<Real>* of[lanes];
-        for (int lane = 0; lane < lanes; ++lane) {
-            of[lane] = pending + std::min(lane, count - 1);
-            pixel[lane] = of[lane]->pixel;
-            record[lane] = of[lane]->record;
-        }
-        rays.origin = gather<Real>([&](int lane) { return of[lane]->origin; });
-        rays.direction = gather<Real>([&](int lane) { return of[lane]->direction; });
-        rays.t_min = Lanes<Real>::gather([&](int lane) { return of[lane]->t_min; });
-        rays.object = Indices<Real>::gather([&](int lane) { return of[lane]->object; });
-        rays.patch = Indices<Real>::gather([&](int lane) { return of[lane]->patch; });
-        rays.inside = Mask<Real>::gather([&](int lane) { return of[lane]->inside; });
-        depth = Indices<Real>::gather([&](int lane) { return of[lane]->depth; });
-        weight = Lanes<Real>::gather([&](int lane) { return of[lane]->weight; });
-        active = Mask<Real>::first(count);
+// Calls visit(field) for all that is known of a group's rays.
+template <typename Group, typename Visit>
+[[gnu::always_inline]] inline void for_each_field(Group& group, Visit visit) {
+    for (auto* vector : {&group.rays.origin, &group.rays.direction}) {
+        visit(vector->x);
+        visit(vector->y);
+        visit(vector->z);
     }
+    visit(group.rays.t_min);
+    visit(group.rays.object);
+    visit(group.rays.patch);
+    visit(group.rays.inside);
+    visit(group.weight);
+    visit(group.depth);
+    visit(group.pixel);
+    visit(group.record);
+}
+
+// Rays that wait for their turn: a stack that keeps each field in a row of its own, so that groups enter and leave it
+// a register at a time.
+template <typename Real>
+class RayStack {
+ public:
+    std::size_t size() const { return size_; }
+    void clear() { size_ = 0; }
+
+    // Adds the rays of the group that the mask names.
+    [[gnu::always_inline]] void push(const Group<Real>& group, Mask<Real> named) {
+        reserve(lane_count<Real>);
+        Cell* end = cells_.data() + size_;
+        for_each_field(group, [&](const auto& field) {
+            pack(named, field, end);
+            end += capacity_;
+        });
+        size_ += static_cast<std::size_t>(count(named));
+    }
+
+    // The rays from `first` on, as many as there are lanes and rays left.
+    [[gnu::always_inline]] Group<Real> group(std::size_t first) const {
+        Group<Real> group;
+        const Cell* from = cells_.data() + first;
+        for_each_field(group, [&](auto& field) {
+            load(from, field);
+            from += capacity_;
+        });
+        group.active = Mask<Real>::first(static_cast<int>(std::min<std::size_t>(size_ - first, lane_count<Real>)));
+        return group;
+    }
+
+    // Moves its last rays, `most` of them or all, to the end of another stack.
+    void move_last(std::size_t most, RayStack& to) {
+        const std::size_t moved = std::min(most, size_);
+        to.reserve(moved);
+        size_ -= moved;
+        for (std::size_t field = 0; field < fields; ++field) {
+            std::copy_n(cells_.data() + field * capacity_ + size_, moved,
+                        to.cells_.data() + field * to.capacity_ + to.size_);
+        }
+        to.size_ += moved;
+    }
+
+ private:
+    struct Cell {
+        Real value;  // or an integer
+    };
+    static constexpr std::size_t fields = 14;
+
+    // Makes room for so many rays, and for a whole group behind them.
+    void reserve(std::size_t rays) {
+        const std::size_t needed = size_ + rays + lane_count<Real>;
+        if (needed <= capacity_) {
+            return;
+        }
+        std::vector<Cell> cells(fields * 2 * needed);
+        for (std::size_t field = 0; field < fields; ++field) {
+            std::copy_n(cells_.data() + field * capacity_, size_, cells.data() + field * 2 * needed);
+        }
+        cells_ = std::move(cells);
+        capacity_ = 2 * needed;
+    }
+
+    std::vector<Cell> cells_;  // fields x capacity
+    std::size_t capacity_ = 0;
+    std::size_t size_ = 0;
 };
 
 }  // namespace whitted::WHITTED_ISA

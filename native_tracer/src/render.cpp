@@ -35,9 +35,9 @@ namespace {
 class Drawing {
  public:
     Drawing(const Kernel& kernel, Image& image) : kernel_(kernel), image_(image) {
-        const auto tiles_in = [](int pixels) { return pixels / tile_size + (pixels % tile_size != 0 ? 1 : 0); };
-        columns_ = static_cast<std::size_t>(tiles_in(image.width()));
-        tiles_ = columns_ * static_cast<std::size_t>(tiles_in(image.height()));
+        const auto tiles_in = [](int pixels, int size) { return pixels / size + (pixels % size != 0 ? 1 : 0); };
+        columns_ = static_cast<std::size_t>(tiles_in(image.width(), tile_width));
+        tiles_ = columns_ * static_cast<std::size_t>(tiles_in(image.height(), tile_height));
     }
 
     void run(int threads, const std::function<void(double)>& watch) {
@@ -117,10 +117,10 @@ class Drawing {
     }
 
     Tile tile(std::size_t i) const {
-        const int left = static_cast<int>(i % columns_) * tile_size;
-        const int top = static_cast<int>(i / columns_) * tile_size;
-        return {left, top, left + std::min(tile_size, image_.width() - left),
-                top + std::min(tile_size, image_.height() - top)};
+        const int left = static_cast<int>(i % columns_) * tile_width;
+        const int top = static_cast<int>(i / columns_) * tile_height;
+        return {left, top, left + std::min(tile_width, image_.width() - left),
+                top + std::min(tile_height, image_.height() - top)};
     }
 
     const Kernel& kernel_;

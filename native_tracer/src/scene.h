@@ -18,11 +18,16 @@
 
 namespace whitted::WHITTED_ISA {
 
+// The spheres outside the tree, as seen from one point.
+template <typename Real>
+using View = std::vector<Sight<Real>>;
+
 template <typename Real>
 struct Light {
     Vector<Real> position;
     Color<Real> color;
     Real a, b, c;  // dimmed by 1 / (a + b d + c d^2) at distance d
+    View<Real> view;
 };
 
 template <typename Real>
@@ -75,6 +80,7 @@ void merge(Mask<Real> mask, const Surface<Real>& other, Surface<Real>& surface) 
 template <typename Real>
 struct Scene {
     Color<Real> ambient, background;
+    View<Real> eye_view;
     std::vector<Light<Real>> lights;
     std::vector<Pigment<Real>> pigments;
     std::vector<Object<Real>> objects;
@@ -88,11 +94,15 @@ struct Scene {
     Scene(const SceneDescription& description, const SearchPlan& plan);
     Scene(const Scene&) = delete;  // objects point to pigments
 
-    // The nearest hit of each ray; of objects at the same distance, the first of the file; for the rays in `wanted`.
-    Hits<Real> nearest_hit(const Rays<Real>& rays, Mask<Real> wanted) const {
+    // The nearest hit of each ray; of objects at the same distance, the first of the file; for the rays in `wanted`,
+    // which start where `view` was made from, if it is given.
+    Hits<Real> nearest_hit(const Rays<Real>& rays, Mask<Real> wanted, const View<Real>* view) const {
         Hits<Real> hits;
         Lanes<Real> limit = select(wanted, hits.t, Lanes<Real>(Real(-1)));
-        for_each_crossing(rays, limit, [&](Indices<Real> object, const Crossing<Real>& crossing) {
+        const auto may_hit = [&](int sphere) {
+            return !view || any((*view)[static_cast<std::size_t>(sphere)].may_be_hit(rays.direction));
+        };
+        for_each_crossing(rays, limit, may_hit, [&](Indices<Real> object, const Crossing<Real>& crossing) {
             const Mask<Real> nearer = (crossing.t < hits.t) | ((crossing.t <= hits.t) & (object < hits.object));
             hits.t = select(nearer, crossing.t, hits.t);
             hits.object = select(nearer, object, hits.object);
@@ -105,13 +115,17 @@ struct Scene {
     }
 
     // An object that is in the way of each ray before `distance`, or -1: nothing is; for the rays in `wanted`.
-    Indices<Real> blocker(const Rays<Real>& rays, Lanes<Real> distance, Mask<Real> wanted) const {
+    Indices<Real> blocker(const Rays<Real>& rays, const Light<Real>& light, Lanes<Real> distance,
+                          Mask<Real> wanted) const {
         Indices<Real> blocker = -1;
         Mask<Real> open = wanted;
         // Crossings beyond it do not matter.
         const Lanes<Real> nowhere = Real(-1);
         Lanes<Real> limit = select(open, distance, nowhere);
-        for_each_crossing(rays, limit, [&](Indices<Real> object, const Crossing<Real>& crossing) {
+        const auto may_hit = [&](int sphere) {
+            return any(open & light.view[static_cast<std::size_t>(sphere)].may_block(rays, distance));
+        };
+        for_each_crossing(rays, limit, may_hit, [&](Indices<Real> object, const Crossing<Real>& crossing) {
             const Mask<Real> blocked = open & (crossing.t < distance);
             blocker = select(blocked, object, blocker);
             open &= ~blocked;
@@ -123,19 +137,18 @@ struct Scene {
 
  private:
     // Calls visit(object, crossing) for the objects that some ray crosses before `limit`, and maybe others, until it
-    // returns false: the one place that knows how the objects are searched. visit may lower `limit`.
-    template <typename Visit>
-    [[gnu::always_inline]] void for_each_crossing(const Rays<Real>& rays, const Lanes<Real>& limit, Visit visit) const {
+    // returns false: the one place that knows how the objects are searched. visit may lower `limit`. Spheres outside
+    // the tree are passed over where may_hit(sphere) is false.
+    template <typename MayHit, typename Visit>
+    [[gnu::always_inline]] void for_each_crossing(const Rays<Real>& rays, const Lanes<Real>& limit, MayHit may_hit,
+                                                  Visit visit) const {
         Crossing<Real> crossing;
-        const auto test = [&](int sphere, int end_sphere, int polyhedron,
-                              int end_polyhedron) __attribute__((always_inline)) {
-            for (; sphere < end_sphere; ++sphere) {
-                const Sphere<Real>& s = spheres[static_cast<std::size_t>(sphere)];
-                if (find_crossing(s, rays, crossing) && !visit(s.object, crossing)) {
-                    return false;
-                }
-            }
-            for (; polyhedron < end_polyhedron; ++polyhedron) {
+        const auto cross_sphere = [&](int sphere) __attribute__((always_inline)) {
+            const Sphere<Real>& s = spheres[static_cast<std::size_t>(sphere)];
+            return !find_crossing(s, rays, crossing) || visit(s.object, crossing);
+        };
+        const auto cross_polyhedra = [&](int polyhedron, int end) __attribute__((always_inline)) {
+            for (; polyhedron < end; ++polyhedron) {
                 const Polyhedron<Real>& p = polyhedra[static_cast<std::size_t>(polyhedron)];
                 if (find_crossing(p, patches.data(), rays, crossing) && !visit(p.object, crossing)) {
                     return false;
@@ -143,11 +156,22 @@ struct Scene {
             }
             return true;
         };
-        if (test(0, spheres_apart, 0, polyhedra_apart)) {
-            tree.for_each_leaf(rays, limit, [&](const TreeNode<Real>& leaf) {
-                return test(leaf.first_sphere, leaf.end_sphere, leaf.first_polyhedron, leaf.end_polyhedron);
-            });
+        for (int sphere = 0; sphere < spheres_apart; ++sphere) {
+            if (may_hit(sphere) && !cross_sphere(sphere)) {
+                return;
+            }
         }
+        if (!cross_polyhedra(0, polyhedra_apart)) {
+            return;
+        }
+        tree.for_each_leaf(rays, limit, [&](const TreeNode<Real>& leaf) {
+            for (int sphere = leaf.first_sphere; sphere < leaf.end_sphere; ++sphere) {
+                if (!cross_sphere(sphere)) {
+                    return false;
+                }
+            }
+            return cross_polyhedra(leaf.first_polyhedron, leaf.end_polyhedron);
+        });
     }
 
     void add_shape(const SceneDescription& description, int object);
@@ -169,8 +193,12 @@ Scene<Real>::Scene(const SceneDescription& description, const SearchPlan& plan)
     : ambient(vector_of<Real>(description.ambient)), background(vector_of<Real>(description.background)), tree(plan) {
     const auto real = [](double value) { return static_cast<Real>(value); };
     for (const LightDescription& light : description.lights) {
-        lights.push_back({vector_of<Real>(light.position), vector_of<Real>(light.color), real(light.attenuation[0]),
-                          real(light.attenuation[1]), real(light.attenuation[2])});
+        lights.push_back({vector_of<Real>(light.position),
+                          vector_of<Real>(light.color),
+                          real(light.attenuation[0]),
+                          real(light.attenuation[1]),
+                          real(light.attenuation[2]),
+                          {}});
     }
     for (const PigmentDescription& pigment : description.pigments) {
         pigments.push_back(pigment_of<Real>(pigment));
@@ -206,6 +234,17 @@ Scene<Real>::Scene(const SceneDescription& description, const SearchPlan& plan)
             tree[i].end_sphere = static_cast<int>(spheres.size());
             tree[i].end_polyhedron = static_cast<int>(polyhedra.size());
         }
+    }
+    const auto view_from = [&](const Vector<Real>& point) {
+        View<Real> view;
+        for (int sphere = 0; sphere < spheres_apart; ++sphere) {
+            view.emplace_back(spheres[static_cast<std::size_t>(sphere)], point);
+        }
+        return view;
+    };
+    eye_view = view_from(vector_of<Real>(description.camera.eye));
+    for (Light<Real>& light : lights) {
+        light.view = view_from(light.position);
     }
 }
 

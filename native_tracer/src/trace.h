@@ -54,7 +54,7 @@ class Tracer {
     // the same order on every processor.
     static constexpr std::size_t batch_size = 64;
 
-    void trace_group(const Group<Real>& group);
+    void trace_group(const Group<Real>& group, const View<Real>* view = nullptr);
     Surface<Real> surface_at(const Rays<Real>& rays, const Hits<Real>& hits) const;
     Color<L> local_color(const Group<Real>& group, const Hits<Real>& hits, const Surface<Real>& surface);
     L highlight(const Rays<Real>& rays, const Hits<Real>& hits, const Surface<Real>& surface, const Vector<L>& to_light,
@@ -68,7 +68,9 @@ class Tracer {
     const int max_depth_;
     const bool blinn_;
 
-    std::vector<PendingRay<Real>> pending_;
+    // Successors of the rays that are traced, and those that are traced. Kinds wait apart: in which order rays are
+    // traced must not depend on the number of lanes.
+    RayStack<Real> reflected_, transmitted_, batch_;
     Color<Sum>* sums_ = nullptr;
     RayCounts* counts_ = nullptr;
 };
@@ -79,29 +81,25 @@ bool Tracer<Real, Observer>::trace(PrimaryRays primary_rays, Color<Sum>* sums, R
                                    const std::atomic<bool>& stop) {
     sums_ = sums;
     counts_ = &counts;
-    pending_.clear();
+    reflected_.clear();
+    transmitted_.clear();
     while (!stop.load(std::memory_order_relaxed)) {
-        Group<Real> group;
-        if (pending_.size() < batch_size && primary_rays.next(group)) {
+        if (reflected_.size() + transmitted_.size() < batch_size && !primary_rays.done()) {
+            // Whole rows of pixels, for where a row is cut depends on the number of lanes.
             std::size_t traced = 0;
             do {
-                counts.primary += static_cast<std::uint64_t>(group.count);
+                Group<Real> group = primary_rays.next();
                 observer_.primary(group);
-                trace_group(group);
-                traced += static_cast<std::size_t>(group.count);
-            } while (traced < batch_size && primary_rays.next(group));
-        } else if (!pending_.empty()) {
-            // All are taken off the stack before the first of them puts its successors there.
-            Group<Real> batch[batch_size / lane_count<Real>];
-            const std::size_t size = std::min(pending_.size(), batch_size);
-            const PendingRay<Real>* const first = pending_.data() + (pending_.size() - size);
-            std::size_t groups = 0;
-            for (std::size_t taken = 0; taken < size; taken += lane_count<Real>) {
-                batch[groups++].take(first + taken, size - taken);
-            }
-            pending_.resize(pending_.size() - size);
-            for (std::size_t i = 0; i < groups; ++i) {
-                trace_group(batch[i]);
+                trace_group(group, &scene_.eye_view);
+                traced += static_cast<std::size_t>(count(group.active));
+            } while (!primary_rays.done() && (traced < batch_size || !primary_rays.begins_row()));
+            counts.primary += traced;
+        } else if (reflected_.size() + transmitted_.size() > 0) {
+            batch_.clear();
+            reflected_.move_last(batch_size, batch_);
+            transmitted_.move_last(batch_size - batch_.size(), batch_);
+            for (std::size_t first = 0; first < batch_.size(); first += lane_count<Real>) {
+                trace_group(batch_.group(first));
             }
         } else {
             return true;
@@ -112,8 +110,8 @@ bool Tracer<Real, Observer>::trace(PrimaryRays primary_rays, Color<Sum>* sums, R
 
 // Traces a ray in each lane, and leaves those that follow from them on the stack.
 template <typename Real, typename Observer>
-void Tracer<Real, Observer>::trace_group(const Group<Real>& group) {
-    const Hits<Real> hits = scene_.nearest_hit(group.rays, group.active);
+void Tracer<Real, Observer>::trace_group(const Group<Real>& group, const View<Real>* view) {
+    const Hits<Real> hits = scene_.nearest_hit(group.rays, group.active, view);
     Color<L> color(scene_.background);
     if (any(group.active & (hits.object >= 0))) {
         const Surface<Real> surface = surface_at(group.rays, hits);
@@ -123,7 +121,8 @@ void Tracer<Real, Observer>::trace_group(const Group<Real>& group) {
     }
     observer_.color(group, color);
     const Color<L> weighted = group.weight * color;
-    for (int lane = 0; lane < group.count; ++lane) {
+    for (unsigned lanes = group.active.bits(); lanes != 0; lanes &= lanes - 1) {
+        const int lane = std::countr_zero(lanes);
         sums_[group.pixel[lane]] += Color<Sum>(lane_of(weighted, lane));
     }
 }
@@ -199,7 +198,7 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
         if (any(faces)) {
             counts_->shadow += static_cast<std::uint64_t>(count(faces));
             shadow_rays.direction = to_light;
-            blocker = scene_.blocker(shadow_rays, distance, faces);
+            blocker = scene_.blocker(shadow_rays, light, distance, faces);
         }
         const Mask<Real> lit = faces & (blocker < 0);
         if (!Observer::observes && !any(lit)) {
@@ -267,31 +266,34 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
         observer_.total_reflection(group, transmits & total);
     }
 
-    const auto push = [&](int lane, RayKind kind, const Vector<L>& along, L weight, bool inside) {
-        PendingRay<Real>& ray = pending_.emplace_back();
-        ray.origin = lane_of(surface.point, lane);
-        ray.direction = lane_of(along, lane);
-        ray.t_min = surface.error[lane];
-        ray.weight = weight[lane];
-        ray.object = hits.object[lane];
-        ray.patch = hits.patch[lane];
-        ray.depth = group.depth[lane] + 1;
-        ray.pixel = group.pixel[lane];
-        ray.inside = inside;
-        ray.record = observer_.spawned(kind, group.record[lane], ray);
-        counts_->deepest = std::max(counts_->deepest, ray.depth);
+    // Both kinds start where the ray has hit, and differ in the rest.
+    Group<Real> successors;
+    successors.rays.origin = surface.point;
+    successors.rays.t_min = surface.error;
+    successors.rays.object = hits.object;
+    successors.rays.patch = hits.patch;
+    successors.depth = group.depth + Indices<Real>(1);
+    successors.pixel = group.pixel;
+    successors.record = group.record;
+    const auto push = [&](RayKind kind, const Vector<L>& along, Mask<Real> inside, L weight, Mask<Real> followed,
+                          RayStack<Real>& stack, std::uint64_t& counter) {
+        successors.rays.direction = along;
+        successors.rays.inside = inside;
+        successors.weight = weight;
+        successors.active = followed;
+        observer_.spawned(kind, group, successors);
+        stack.push(successors, followed);
+        counter += static_cast<std::uint64_t>(count(followed));
     };
-    counts_->reflected += static_cast<std::uint64_t>(count(reflects));
-    counts_->transmitted += static_cast<std::uint64_t>(count(transmits));
-    for (unsigned lanes = (reflects | transmits).bits(); lanes != 0; lanes &= lanes - 1) {
-        const int lane = std::countr_zero(lanes);
-        if (reflects[lane]) {
-            push(lane, RayKind::reflected, mirrored, reflected_weight, hits.inside[lane]);
-        }
-        if (transmits[lane]) {
-            push(lane, RayKind::transmitted, bent, transmitted_weight, bent_inside[lane]);
-        }
+    if (any(reflects)) {
+        push(RayKind::reflected, mirrored, hits.inside, reflected_weight, reflects, reflected_, counts_->reflected);
     }
+    if (any(transmits)) {
+        push(RayKind::transmitted, bent, bent_inside, transmitted_weight, transmits, transmitted_,
+             counts_->transmitted);
+    }
+    for_each_distinct(successors.depth, reflects | transmits,
+                      [&](int depth, int, Mask<Real>) { counts_->deepest = std::max(counts_->deepest, depth); });
 }
 
 // Which of the rays that would follow, with the given weights, are traced.
