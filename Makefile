@@ -1,7 +1,7 @@
 # make render   draw a scene with Mitsuba and compare it with the native tracer
 # make test     run the tests
 # make check    run the linters, the type checker, and the compiler with warnings as errors
-# make figures  print the figures of the README
+# make figures  print the figures of the README, and draw its chart
 #
 # Each sets up .venv first, where it is missing or older than what it was made from.
 
@@ -39,6 +39,9 @@ check: .venv/.checkers
 
 figures: .venv/.installed
 	$(BIN)/python benchmarks/figures.py
+	$(BIN)/python benchmarks/growth.py
+	mkdir -p docs
+	$(BIN)/whitted chart scenes/figure1.in -o docs/figure1.png
 
 clean:
 	rm -rf build out .venv
