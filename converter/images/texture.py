@@ -9,8 +9,10 @@ from typing import IO, Any
 
 from converter.images import ppm
 
-MOST_TEXELS_A_BYTE = 10_000
-"""No format stores a picture in less: an image that claims to is broken, and room is not made for it."""
+MOST_SAMPLES_A_BYTE, MOST_A_BYTE_OF_LARGE = 10_000, 256
+"""What compression makes of a blank page, and, above `LARGE` samples, what it makes of pictures: an image that claims
+more for its bytes is broken or hostile, and room is not made for it."""
+LARGE = 1 << 26
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -122,7 +124,8 @@ def _open_other(path: str, size: int) -> Any:
         known = "could not find a format reader" not in complaint
         raise ValueError(f"no image that can be read{f' ({_first_line(complaint)})' if known else ''}")
     spec = image.spec()
-    if spec.width * spec.height > MOST_TEXELS_A_BYTE * size:
+    samples = spec.width * spec.height * max(3, spec.nchannels)
+    if samples > min(MOST_SAMPLES_A_BYTE * size, max(LARGE, MOST_A_BYTE_OF_LARGE * size)):
         image.close()
         raise ValueError(f"it claims {spec.width} x {spec.height} pixels in {size} bytes")
     if spec.depth > 1 or spec.deep:

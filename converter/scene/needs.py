@@ -1,6 +1,7 @@
 """What a scene needs of a renderer, worked out once, so that neither renderer models more than that."""
 
 import math
+import sys
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
@@ -123,7 +124,7 @@ def eta(finish: Finish, reading: IorReading) -> float:
     """n1/n2, outside over inside, of a finish; 1 where nothing is transmitted, since `ior` may then be anything."""
     if finish.kt == 0:
         return 1.0
-    return 1 / finish.ior if is_index(finish, reading) else finish.ior
+    return min(1 / finish.ior, sys.float_info.max) if is_index(finish, reading) else finish.ior
 
 
 def is_index(finish: Finish, reading: IorReading) -> bool:

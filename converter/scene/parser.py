@@ -44,7 +44,7 @@ def load_scene(path: str | Path) -> Scene:
     """
     file = Path(path)
     try:
-        data = file.read_bytes()
+        data = _read_bytes(file)
     except OSError as error:
         raise SceneError([Problem(file, 0, 0, _why_unreadable(error))]) from error
     scene, reader = _read_text(Words(decode(data, file), file))
@@ -55,6 +55,13 @@ def load_scene(path: str | Path) -> Scene:
 
         problems = check_geometry(scene)
     return _checked(scene, reader, problems)
+
+
+def _read_bytes(file: Path) -> bytes:
+    """What is in a file; of what is no text only the beginning, since there are devices that never end."""
+    with file.open("rb") as opened:
+        start = opened.read(1 << 16)
+        return start if b"\0" in start else start + opened.read()
 
 
 def _read_text(text: Words) -> tuple[Scene | None, Reader]:

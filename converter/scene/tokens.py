@@ -4,6 +4,7 @@ Only the words and the number of the first word of each line are kept: a column 
 so that a scene of half a million words is cut in a fraction of a second.
 """
 
+import re
 from bisect import bisect_right
 from math import isfinite, nan
 from pathlib import Path
@@ -12,8 +13,10 @@ from converter.scene.errors import TAB, Problem, SceneError, shown
 
 HUGE = 10**18
 """Stands for every larger count: nothing that large is ever there, and Python refuses to convert very long ones."""
-NOT_FINITE = ("nan", "inf", "infinity")
-"""What Python, C and old scenes may write for what is no finite number, in lower case and without a sign."""
+NOT_FINITE = ("nan", "inf", "infinity", "1.#inf", "1.#ind", "1.#qnan", "1.#snan")
+"""What Python, C and old scenes may write for what is no finite number, in lower case and without a sign; with a `#`,
+old Windows programs."""
+_COMMENT = re.compile(r"#(?!(?<=1\.#)(?:INF|IND|QNAN|SNAN)).*")
 _IMAGES = tuple(b"P%d%c" % (kind, space) for kind in range(1, 7) for space in b" \t\r\n")
 _IMAGES += (b"\x89PNG", b"\xff\xd8\xff", b"GIF8", b"v/1\x01")  # PNG, JPEG, GIF, OpenEXR
 _DASHES = dict.fromkeys(map(ord, "\u2010\u2011\u2012\u2013\u2014\u2212\ufe63\uff0d"), "-")
@@ -38,7 +41,7 @@ class Words:
         self.plain = "_" not in text and text.isascii()
         for line in self.lines:
             self._starts.append(len(self.words))
-            self.words += (line.partition("#")[0] if commented else line).split()
+            self.words += (_COMMENT.sub("", line) if commented else line).split()
 
     def line(self, at: int) -> int:
         """Number, from 1, of the line that the word stands on."""
@@ -122,7 +125,7 @@ def why_no_number(word: str) -> str:
         return f"found {shown(word)}, whose minus sign is not the plain '-'"
     if word.count(",") == 1 and number(word.replace(",", ".")) == number(word.replace(",", ".")):
         return f"found {shown(word)}: decimals follow a point, not a comma"
-    if word.lower().lstrip("+-") in NOT_FINITE:
+    if word.lower().lstrip("+-").rstrip("0") in NOT_FINITE:
         return f"found {shown(word)}, which is not finite"
     if word.isascii() and word.lower().lstrip("+-")[:1] in tuple(".0123456789") and _overflows(word):
         return f"found {shown(word)}, which is too large"

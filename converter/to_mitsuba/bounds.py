@@ -17,6 +17,8 @@ CUT_OFF = 1 / 8
 FARTHEST = 2.0**16
 """How far a plane is followed, at most, in units of the distance from it: float32 vertices out there are off by up to
 2^-25 of their distance, a 512th of this one."""
+LARGEST = 2.0**126
+"""Where every box ends; float32 numbers do not far beyond."""
 
 
 class Box(NamedTuple):
@@ -27,11 +29,13 @@ class Box(NamedTuple):
 
     @classmethod
     def of(cls, low: Floats, high: Floats) -> "Box":
-        """The box between two corners, (3,) each."""
-        (a, b, c), (d, e, f) = low.tolist(), high.tolist()
+        """The box between two corners, (3,) each, as far as `LARGEST`; NaN is as far as that."""
+        a, b, c = np.fmin(np.fmax(low, -LARGEST), LARGEST).tolist()
+        d, e, f = np.fmax(np.fmin(high, LARGEST), -LARGEST).tolist()
         return cls((a, b, c), (d, e, f))
 
 
+@np.errstate(over="ignore", invalid="ignore")  # numbers may be as large as they like
 def scene_bounds(scene: Scene, settings: Settings | None = None) -> Box:
     """How large a box has to be for nothing outside of it to be missed in the picture of `scene`.
 
@@ -52,22 +56,22 @@ def scene_bounds(scene: Scene, settings: Settings | None = None) -> Box:
     """
     settings = settings or Settings()
     eye = np.array(scene.camera.eye)
-    size = float(np.linalg.norm(eye - scene.camera.look_at))
-    size = max([size, *(float(np.linalg.norm(eye - light.position)) for light in scene.lights)])
+    size = max(math.dist(eye, p) for p in (scene.camera.look_at, *(light.position for light in scene.lights)))
     enclosing: list[tuple[Floats, Floats]] = []
     heights: list[tuple[float, float]] = []  # of the eye above a polyhedron's planes, and how far that goes
     for o, fact in zip(scene.objects, scene_facts(scene), strict=True):
         if isinstance(o.shape, Sphere):
             low, high = np.array(o.shape.center) - o.shape.radius, np.array(o.shape.center) + o.shape.radius
-            distance = float(np.linalg.norm(eye - o.shape.center))
+            distance = math.dist(eye, o.shape.center)
             size = max(size, distance + o.shape.radius)
             encloses = distance < o.shape.radius
         else:
             assert fact is not None
             low, high = np.array(fact.low), np.array(fact.high)
             planes = np.reshape([o.shape.planes[k] for k in fact.kept], (-1, 4))
+            planes /= np.abs(planes[:, :3]).max(axis=1, keepdims=True)  # normals may have any length
             distances = planes @ [*eye, 1] / np.linalg.norm(planes[:, :3], axis=1)
-            farthest = float(np.linalg.norm(np.maximum(eye - low, high - eye))) if fact.bounded else np.inf
+            farthest = math.hypot(*np.maximum(eye - low, high - eye)) if fact.bounded else math.inf
             heights.append((float(np.abs(distances).max(initial=0)), farthest))
             encloses = fact.bounded and bool(np.all(distances < 0))
         if encloses and not _followed(scene.finishes[o.finish].kt, settings):
@@ -76,7 +80,7 @@ def scene_bounds(scene: Scene, settings: Settings | None = None) -> Box:
     half = math.tan(math.radians(scene.camera.fovy) / 2)
     to_corner = half * math.hypot(1, settings.width / settings.height)
     pixel = 2 * half / settings.height / (1 + to_corner**2)
-    stretch = min(1 / (CUT_OFF * pixel), FARTHEST)
+    stretch = 1 / max(CUT_OFF * pixel, 1 / FARTHEST)
     bounces = any(_followed(f.kr, settings) or _followed(f.kt, settings) for f in scene.finishes)
     reach = max([size, *(min(stretch * (h + bounces * size), farthest) for h, farthest in heights)])
     low, high = eye - 1.01 * reach, eye + 1.01 * reach

@@ -21,7 +21,7 @@ from typing import TYPE_CHECKING, Literal
 import numpy as np
 from numpy.typing import NDArray
 
-from converter.to_mitsuba.bounds import Box, scene_bounds
+from converter.to_mitsuba.bounds import LARGEST, Box, scene_bounds
 from native_tracer.halfspaces import Face, HalfSpace, PolyhedronFacts, polyhedron_faces, polyhedron_facts
 
 if TYPE_CHECKING:
@@ -39,6 +39,8 @@ Ring = list[int]
 HAIR = 2.0**-46
 """Edges shorter than this share of their distance from the origin become points: at ordinary angles the roundings of
 the planes, 2^-53 each, move vertices by less."""
+SMALLEST = 2.0**-126
+"""Below this float32 numbers lose digits."""
 OFF = 2.0**-44
 """How far a vertex may be from the planes of its faces, as a share of the body's distance from the origin: it is
 computed to about 2^-53 of that, and moved by a `HAIR` at most."""
@@ -76,6 +78,7 @@ class PolyhedronMesh:
         return trimesh.Trimesh(self.vertices, self.triangles, process=False)
 
 
+@np.errstate(over="ignore", invalid="ignore")  # numbers may be as large as they like
 def polyhedron_mesh(planes: Sequence[HalfSpace], bounds: Box, name: str = "polyhedron") -> PolyhedronMesh:
     """Make a mesh of an intersection of half-spaces.
 
@@ -88,7 +91,7 @@ def polyhedron_mesh(planes: Sequence[HalfSpace], bounds: Box, name: str = "polyh
         name: what messages call the polyhedron.
 
     Raises:
-        PolyhedronError: there is no volume, or no method gives a closed surface.
+        PolyhedronError: there is no volume, no method gives a closed surface, or float32 numbers do not hold it.
 
     """
     body = [tuple(map(float, plane)) for plane in planes]
@@ -106,6 +109,9 @@ def polyhedron_mesh(planes: Sequence[HalfSpace], bounds: Box, name: str = "polyh
                 break
         if kept and not faces:
             raise PolyhedronError(f"{name}: what is left of it inside of the bounds has no volume")
+    size = max((abs(x) for face in faces for x in face.points), default=1.0)
+    if not SMALLEST < size < 4 * LARGEST:
+        raise PolyhedronError(f"{name}: single precision, of which meshes are, has no numbers for a size of {size:.3g}")
     unit = _unit_planes(closed)
     edges = _edges(faces)
     problems = []

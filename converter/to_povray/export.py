@@ -18,7 +18,7 @@ def export_povray(scene: Scene, settings: Settings, file: Path) -> tuple[PovrayS
 
     Raises:
         ExportError: one of the files exists, and this function has not written it.
-        TextureError, OSError: as `povray_scene` and the file system have it.
+        ExportError, TextureError, OSError: as `povray_scene` and the file system have it.
 
     """
     name = re.sub(r"[^A-Za-z0-9_.-]", "_", file.stem)  # POV-Ray's strings take no other without ado

@@ -19,7 +19,7 @@ def transmission(finish: Finish) -> tuple[float, float]:
     if finish.kt == 0:
         return 0.0, 1.0
     refraction = max(finish.kr + finish.kt, finish.kt / (1 - LEAST_OPACITY))
-    return finish.kt / refraction, refraction
+    return min(finish.kt / refraction, 1 - LEAST_OPACITY), refraction
 
 
 def finish(source: Finish, settings: Settings) -> str:

@@ -55,11 +55,11 @@ def fades(attenuation: tuple[float, float, float], size: float) -> tuple[list[Fa
             return [_pole(a / b, 1 / b, closest)], 0.0
         if b == 0:
             distance = max(math.sqrt(a / c), closest)
-            return [Fade(1 / (2 * c * distance**2), 2.0, distance)], 0.0
+            return [Fade(0.5 / c / distance / distance, 2.0, distance)], 0.0
         root = math.sqrt(max(b * b - 4 * a * c, 0))
         if root > b / 64:  # or the two would cancel in single precision, in which POV-Ray computes with colours
             far = (b + root) / (2 * c)
-            return [_pole(a / (c * far), 1 / root, closest), _pole(far, -1 / root, closest)], 0.0
+            return [_pole(2 * a / (b + root), 1 / root, closest), _pole(far, -1 / root, closest)], 0.0
     return _approach(a, b, c, size)
 
 
@@ -75,7 +75,7 @@ def _approach(a: float, b: float, c: float, size: float) -> tuple[list[Fade], fl
     d = np.concatenate([np.linspace(0, min(8 * unit, size), 200), np.geomspace(unit / 8, max(size, 8 * unit), 200)])
     divisor = a + b * d + c * d**2
     d, divisor = d[divisor > 0], divisor[divisor > 0]
-    if not d.size:
+    if not d.size or not np.isfinite(divisor).all():
         return [], math.inf
     basis = np.stack([2 / (1 + (d / (unit * distance)) ** power) for power, distance in _TERMS], axis=1)
     weights = np.linalg.lstsq(basis, 1 / divisor, rcond=None)[0]

@@ -1,5 +1,6 @@
 """Pigments, and the images of textures."""
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -7,6 +8,7 @@ from numpy.typing import NDArray
 
 from converter.images.texture import Texture
 from converter.scene.model import Checker, Pigment, Solid, Texmap, Vector
+from converter.to_mitsuba.export import ExportError
 from converter.to_povray.text import number, rgb, vector
 
 Floats = NDArray[np.float64]
@@ -101,6 +103,8 @@ def _texmap(source: Texmap, transmitted: float, image: Image, boxes: Sequence[Bo
 
 def _image_map(source: Texmap, transmitted: float, file: str, shifts: tuple[float, ...]) -> str:
     to_image, offset = _to_image(source)
+    if not np.linalg.det(to_image):
+        raise ExportError("POV-Ray inverts the axes of a texmap, and has no numbers for the inverse of such short ones")
     to_world = np.linalg.inv(to_image)
     columns = [*to_world.T, -to_world @ (offset + np.array([*shifts, 0]))]
     transmit = f" transmit all {number(transmitted)}" if transmitted else ""
@@ -135,7 +139,10 @@ def _across(v: Floats) -> Floats:
 
 def _constant(p: Sequence[float], count: int) -> int | None:
     """The texel, of `count`, where s or r is the same everywhere."""
-    return None if any(p[:3]) else int(np.fmod(np.trunc(p[3] * count), count)) % count
+    if any(p[:3]):
+        return None
+    position = p[3] * count
+    return int(math.fmod(math.trunc(position), count)) % count if math.isfinite(position) else 0
 
 
 def _negative(p: Sequence[float], boxes: Sequence[Box] | None) -> set[bool]:

@@ -7,13 +7,21 @@ import numpy as np
 
 from converter.scene.model import Checker, Light, Object, Pigment, Polyhedron, Scene, Solid, Sphere, Texmap, Vector
 from converter.scene.needs import SceneNeeds
+from converter.to_mitsuba.export import ExportError
 
 NEAREST, FARTHEST = 1e-3, 1e7
 """Distances between which POV-Ray sees everything."""
+SMALLEST, LARGEST = 1e-100, 1e100
+"""Sizes of scenes between which squares of their numbers neither overflow nor vanish."""
 
 
 def scaled(scene: Scene, factor: float) -> Scene:
-    """`scene` with all lengths multiplied by `factor`, which gives the same picture."""
+    """`scene` with all lengths multiplied by `factor`, which gives the same picture.
+
+    Raises:
+        ExportError: a plane cannot be multiplied.
+
+    """
 
     def times(v: Vector) -> Vector:
         x, y, z = v
@@ -38,7 +46,10 @@ def scaled(scene: Scene, factor: float) -> Scene:
             case Sphere(center, radius):
                 return replace(source, shape=Sphere(times(center), factor * radius))
             case Polyhedron(planes):
-                return replace(source, shape=Polyhedron(tuple((a, b, c, factor * d) for a, b, c, d in planes)))
+                moved = tuple((a, b, c, factor * d) for a, b, c, d in planes)
+                if not all(math.isfinite(d) for _, _, _, d in moved):
+                    raise ExportError("POV-Ray's numbers do not hold this scene: a plane would be too far away")
+                return replace(source, shape=Polyhedron(moved))
 
     return replace(
         scene,
@@ -54,8 +65,15 @@ def suitable_scale(scene: Scene, needs: SceneNeeds) -> float:
 
     POV-Ray takes what is nearer than `NEAREST` along a ray for the surface that the ray starts on, and sees nothing
     that is farther than `FARTHEST`: a horizon needs room.
+
+    Raises:
+        ExportError: no numbers hold the scene's size and its square.
+
     """
-    return math.ldexp(1, round(math.log2((2**12 if has_horizon(scene, needs) else 2**15) / reach(scene, needs))))
+    size = reach(scene, needs)
+    if not SMALLEST < size < LARGEST:
+        raise ExportError(f"POV-Ray's numbers do not hold this scene: it reaches {size:.3g} far")
+    return math.ldexp(1, round(math.log2((2**12 if has_horizon(scene, needs) else 2**15) / size)))
 
 
 def has_horizon(scene: Scene, needs: SceneNeeds) -> bool:

@@ -4,6 +4,8 @@ import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
+import numpy as np
+
 from converter.images.texture import read_texture
 from converter.scene.model import Object, Scene, Texmap
 from converter.scene.needs import SceneNeeds, scene_needs
@@ -39,11 +41,13 @@ class PovrayScene:
     omissions: tuple[str, ...]
 
 
+@np.errstate(all="ignore")  # numbers may be as large as they like; those that are none cannot be written
 def povray_scene(scene: Scene, settings: Settings, name: str = "scene") -> PovrayScene:
     """Everything that `scene`, drawn with `settings`, needs; the names of texture files begin with `name`.
 
     Raises:
         TextureError: a texture that is used cannot be read.
+        ExportError: POV-Ray has no numbers for it.
 
     """
     factor = suitable_scale(scene, scene_needs(scene, settings))

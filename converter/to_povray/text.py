@@ -1,10 +1,20 @@
 """Numbers, vectors and colours as POV-Ray's language writes them."""
 
+import math
 from collections.abc import Iterable
+
+from converter.to_mitsuba.export import ExportError
 
 
 def number(value: float) -> str:
-    """The shortest digits that read back as the same double."""
+    """The shortest digits that read back as the same double.
+
+    Raises:
+        ExportError: it is not finite.
+
+    """
+    if not math.isfinite(value):
+        raise ExportError("POV-Ray's numbers do not hold this scene: some would be too large, or undefined")
     return repr(float(value)).removesuffix(".0")
 
 

@@ -29,7 +29,7 @@ class Surface:
     material: str
     sphere: Plane | None = None
     planes: dict[int, Plane] = field(default_factory=dict)
-    box: tuple[Vector, Vector] | None = None  # around it, with room for rounding; None where it is unbounded
+    box: tuple[Vector, Vector] | None = None  # around it, with room for rounding; None where that is not finite
     triangles: tuple[int, ...] = ()
     deviation: float = 0.0
 
@@ -68,11 +68,12 @@ def _surface(name: str, entry: dict[str, Any]) -> Surface:
     return Surface(name, material, None, planes, box, tuple(entry.get("triangles", ())), entry.get("deviation", 0.0))
 
 
-def _roomy(low: Vector, high: Vector) -> tuple[Vector, Vector]:
-    """A box a little larger than the surface, for the roundings here and in the kernel."""
+def _roomy(low: Vector, high: Vector) -> tuple[Vector, Vector] | None:
+    """A box a little larger than the surface, for the roundings here and in the kernel; None if no numbers hold it."""
     room = 1e-9 * max(map(abs, (*low, *high)))
     (a, b, c), (d, e, f) = low, high
-    return (a - room, b - room, c - room), (d + room, e + room, f + room)
+    corners = (a - room, b - room, c - room), (d + room, e + room, f + room)
+    return corners if all(map(math.isfinite, (*corners[0], *corners[1]))) else None
 
 
 def _normalised(plane: list[float]) -> Plane:

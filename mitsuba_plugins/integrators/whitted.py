@@ -107,7 +107,7 @@ class Whitted(mi.SamplingIntegrator):
         self.intersections = props.get("intersections", "auto")
         if self.intersections not in (*INTERSECTIONS, "auto"):
             raise ValueError(f"whitted: intersections is one of {INTERSECTIONS} or auto, not '{self.intersections}'")
-        if self.intersections == "auto":
+        if self.intersections == "auto" or (self.intersections == "bvh" and not self.surfaces):  # of nothing, no tree
             size = sum(max(len(surface.planes), 1) for surface in self.surfaces)
             self.intersections = "analytic" if size <= ANALYTIC_LIMIT else "bvh"
         self.precision = props.get("precision", "double")
