@@ -2,6 +2,7 @@
 # make test     run the tests
 # make check    run the linters, the type checker, and the compiler with warnings as errors
 # make figures  print the figures of the README, and draw its chart
+# make fuzz     look for inputs that fail, for SECONDS; what it finds is left in out/fuzz
 #
 # Each sets up .venv first, where it is missing or older than what it was made from.
 
@@ -10,12 +11,13 @@ SCENE ?= scenes/figure1.in
 OUT ?= out/$(basename $(notdir $(SCENE))).ppm
 WIDTH ?= 800
 HEIGHT ?= 600
+SECONDS ?= 60
 
 BIN := .venv/bin
 SOURCES := pyproject.toml CMakeLists.txt $(wildcard native_tracer/src/*)
 CPP := $(wildcard native_tracer/src/*.cpp native_tracer/src/*.h)
 
-.PHONY: render test check figures clean
+.PHONY: render test check figures fuzz clean
 .DELETE_ON_ERROR:
 
 # Status 1 of the comparison says that the pictures differ, which is no failure to render.
@@ -43,6 +45,9 @@ figures: .venv/.installed
 	mkdir -p docs
 	$(BIN)/whitted chart scenes/figure1.in -o docs/figure1.png
 
+fuzz: .venv/.fuzzer
+	$(BIN)/python fuzzing/fuzz_scenes.py $(SECONDS)
+
 clean:
 	rm -rf build out .venv
 
@@ -58,6 +63,10 @@ clean:
 	    echo "no C++ compiler; install one (Debian, Ubuntu: apt install g++; Fedora: dnf install gcc-c++)" >&2; exit 1
 	$(PYTHON) -m venv .venv
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
+	@touch $@
+
+.venv/.fuzzer: .venv/.installed
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fuzz]'
 	@touch $@
 
 .venv/.checkers: .venv/.installed

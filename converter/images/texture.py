@@ -54,13 +54,17 @@ def read_texture(path: str | Path) -> Texture:
             raise TextureError(f"{path}: it does not fit into memory") from error
 
 
-def probe_texture(path: str | Path) -> tuple[int, int]:
+def probe_texture(path: str | Path, hint: bool = True) -> tuple[int, int]:
     """Width and height of the image in the file `path`, from its header alone.
+
+    Args:
+        path: the file.
+        hint: look for a file with a similar name where it is missing, which takes its time in large folders.
 
     Raises:
         TextureError: the file is missing or no image.
     """
-    file, start, size = _open(Path(path))
+    file, start, size = _open(Path(path), hint)
     with file:
         try:
             if ppm.is_ppm(start):
@@ -74,7 +78,7 @@ def probe_texture(path: str | Path) -> tuple[int, int]:
         return spec.width, spec.height
 
 
-def _open(path: Path) -> tuple[IO[bytes], bytes, int]:
+def _open(path: Path, hint: bool = True) -> tuple[IO[bytes], bytes, int]:
     """The open file, its first bytes, and its length."""
     try:
         if not stat.S_ISREG(path.stat().st_mode):  # opening a pipe might wait for ever
@@ -86,7 +90,7 @@ def _open(path: Path) -> tuple[IO[bytes], bytes, int]:
             file.close()
             raise
     except FileNotFoundError as error:
-        raise TextureError(f"{path}: no such file{_similar(path)}") from error
+        raise TextureError(f"{path}: no such file{_similar(path) if hint else ''}") from error
     except (OSError, ValueError) as error:
         reason = error.strerror.lower() if isinstance(error, OSError) and error.strerror else str(error)
         raise TextureError(f"{path}: {reason}") from error

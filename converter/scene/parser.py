@@ -190,7 +190,7 @@ def _check_textures(reader: Reader) -> None:
         if reader.misread and number(reader.words[at]) == number(reader.words[at]):
             continue  # the name is what is missing
         try:
-            probe_texture(file)
+            probe_texture(file, hint=len(reader.problems) < MOST_PROBLEMS)
         except TextureError as error:
             reader.complain(at, f"texture {error}")
 

@@ -69,7 +69,7 @@ def scene_bounds(scene: Scene, settings: Settings | None = None) -> Box:
             assert fact is not None
             low, high = np.array(fact.low), np.array(fact.high)
             planes = np.reshape([o.shape.planes[k] for k in fact.kept], (-1, 4))
-            planes /= np.abs(planes[:, :3]).max(axis=1, keepdims=True)  # normals may have any length
+            planes = planes / np.abs(planes[:, :3]).max(axis=1, keepdims=True)  # normals may have any length
             distances = planes @ [*eye, 1] / np.linalg.norm(planes[:, :3], axis=1)
             farthest = math.hypot(*np.maximum(eye - low, high - eye)) if fact.bounded else math.inf
             heights.append((float(np.abs(distances).max(initial=0)), farthest))

@@ -11,7 +11,7 @@ from typing import NamedTuple
 import numpy as np
 
 from converter.scene.model import Light
-from converter.to_povray.text import rgb, vector
+from converter.to_povray.text import number, rgb, vector
 
 CLOSEST = 1e-9
 """A light that grows without end is drawn as one that grows up to this distance, in units of the scene's size."""
@@ -38,16 +38,21 @@ def light(source: Light, size: float) -> tuple[str, float]:
     found, error = fades(source.attenuation, size)
     text = ""
     for weight, power, distance in found:
-        fading = f" fade_power {power:g} fade_distance {distance!r}" if power else ""
+        fading = f" fade_power {power:g} fade_distance {number(distance)}" if power else ""
         color = rgb(weight * channel for channel in source.color)
         text += f"light_source {{ {vector(source.position)} {color}{fading} }}\n"
     return text, error
 
 
 def fades(attenuation: tuple[float, float, float], size: float) -> tuple[list[Fade], float]:
-    """Fades whose sum is 1 / (a + b d + c d^2), and the largest error of that sum at distances up to `size`."""
+    """Fades whose sum is 1 / (a + b d + c d^2), and the largest error of that sum at distances up to `size`.
+
+    The error is infinite, and there are none, where nothing comes near it.
+    """
     a, b, c = attenuation
     closest = CLOSEST * size
+    if max(a, b, c) <= 0:  # what was positive has been rounded to zero in other units
+        return [], math.inf
     if a > 0 and b == c == 0:
         return [Fade(1 / a)], 0.0
     if min(a, b, c) >= 0:

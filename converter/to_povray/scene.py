@@ -117,7 +117,8 @@ def _lights(scene: Scene, needs: SceneNeeds, factor: float, omissions: list[str]
             a, b, c = source.attenuation
             law = f"1 / ({a:g} + {b * factor:g} d + {c * factor**2:g} d^2)"
             place = _place("light", i, scene.light_lines, i - 1)
-            omissions.append(f"{place}: {law} is approached by five lights, off by up to {error:.1g} of its colour")
+            told = f"is approached by five lights, off by up to {error:.1g} of its colour"
+            omissions.append(f"{place}: {law} {told if sources else 'cannot be expressed, and the light is left out'}")
     return text
 
 
