@@ -6,6 +6,7 @@ may be refused as well, and drawn by the native tracer. Whatever else happens is
 is left in out/fuzz. A failure that is mended becomes a file in tests/corpus.
 """
 
+import importlib
 import io
 import random
 import re
@@ -22,8 +23,7 @@ LONGEST = 1 << 12
 """Bytes of an input: what takes time that grows with the square of the length stays fast."""
 
 # Atheris does not instrument what an editable installation's own finder loads: only the compiled module needs that.
-import native_tracer.bvh  # noqa: E402
-import native_tracer.halfspaces  # noqa: E402
+importlib.import_module("native_tracer")
 
 sys.meta_path[:] = [finder for finder in sys.meta_path if not type(finder).__module__.startswith("_editable")]
 sys.path.insert(0, str(ROOT))

@@ -1,12 +1,19 @@
-"""Whatever the parser is given, it gives a scene or a `SceneError`, soon."""
+"""Whatever the parser is given, it gives a scene or a `SceneError`, soon; and a scene can be drawn."""
 
+import re
+from contextlib import suppress
+from dataclasses import replace
 from pathlib import Path
 
 from hypothesis import given, settings
 from hypothesis import strategies as st
+from test_corpus import SETTINGS, assert_finite
 from test_scene_errors import FIGURE_1, TEXT
 
+from converter.images.texture import TextureError
+from converter.renderers.native import NativeRenderer
 from converter.scene.errors import SceneError
+from converter.scene.geometry import check_geometry
 from converter.scene.parser import parse_scene
 
 KEYWORDS = ["sphere", "polyhedron", "solid", "checker", "texmap", "csg", "move", "quadric", "Sphere"]
@@ -16,6 +23,9 @@ JUNK = st.one_of(
     st.sampled_from(["\n", "\n\n", "\t", "#", "x", "-", "+", "polyhedron 2", "0 0 sphere"]),
     st.text(max_size=6),
 )
+EXTREMES = ["1e308", "-1e308", "1e155", "1e-162", "-1e-40", "5e-324", "1e16", "1", "-1", "0", "0.5", "90"]
+SCENES = sorted(path for path in (Path(__file__).parents[1] / "scenes").glob("*.in") if path.stat().st_size < 5000)
+"""Those of the gallery that a few mutations may ruin."""
 BASES = [TEXT, FIGURE_1, " ".join(TEXT.split()), "\n".join(TEXT.split())]
 
 
@@ -49,6 +59,34 @@ def test_junk_is_refused(words: list[str], head: str) -> None:
 @given(st.binary(max_size=200))
 def test_bytes_are_refused(data: bytes) -> None:
     check_verdict(data)
+
+
+@settings(max_examples=200, deadline=10_000)
+@given(st.sampled_from(SCENES), st.sampled_from(SCENES), st.data())
+def test_mutated_scenes_of_the_gallery_are_drawn_or_refused(file: Path, other: Path, data: st.DataObject) -> None:
+    """Words are deleted, doubled and replaced, by numbers mostly, and lines of another scene put in."""
+    words = re.split(r"(\s+)", file.read_text())
+    strange = other.read_text().splitlines(keepends=True)
+    for _ in range(data.draw(st.integers(1, 3))):
+        at = data.draw(st.integers(0, len(words) - 1))
+        match data.draw(st.sampled_from(["number", "number", "number", "delete", "double", "splice"])):
+            case "number":
+                words[at - at % 2] = data.draw(st.sampled_from(EXTREMES))
+            case "delete":
+                del words[at : at + 2]
+            case "double":
+                words[at:at] = words[at : at + 2]
+            case "splice":
+                words.insert(at, "\n" + data.draw(st.sampled_from(strange)))
+    text = "".join(words)
+    check_verdict(text)
+    try:
+        scene = parse_scene(text, file)
+    except SceneError:
+        return
+    if not check_geometry(scene):
+        with suppress(TextureError):  # of a name that is none any more
+            assert_finite(NativeRenderer().render(scene, replace(SETTINGS, max_depth=4)).pixels, scene)
 
 
 def check_verdict(text: str | bytes) -> None:
