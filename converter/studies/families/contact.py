@@ -1,0 +1,5 @@
+"""."""
+
+from converter.studies.family import Family
+
+FAMILIES: tuple[Family, ...] = ()

@@ -1,0 +1,116 @@
+"""Parts of the families' scenes."""
+
+from collections.abc import Sequence
+from dataclasses import replace
+
+from converter.scene.model import (
+    Camera,
+    Color,
+    Finish,
+    Light,
+    Object,
+    Pigment,
+    Plane,
+    Polyhedron,
+    Scene,
+    Shape,
+    Solid,
+    Sphere,
+    Vector,
+)
+from converter.scene.settings import Settings
+
+MATTE = Finish(0.2, 0.7, 0.0, 1.0, 0.0, 0.0, 0.0)
+"""Ambient and diffuse light only."""
+MIRROR = Finish(0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0)
+"""Nothing but a perfect reflection."""
+GLASS = Finish(0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 1.5)
+"""Nothing but a perfect refraction."""
+GLOW = Finish(1.0, 0.0, 0.0, 1.0, 0.0, 0.0, 0.0)
+"""Its pigment's own colour, times the ambient light's, whatever the lights."""
+
+WHITE: Color = (1.0, 1.0, 1.0)
+BLACK: Color = (0.0, 0.0, 0.0)
+
+
+def settings(width: int = 48, height: int = 36, background: Color = BLACK, max_depth: int | None = None) -> Settings:
+    """A small picture, one ray through the centre of each pixel, and no ray dropped for its weight."""
+    return Settings(width, height, pixel="center", background=background, cutoff=0.0, max_depth=max_depth)
+
+
+def camera(eye: Vector, look_at: Vector, fovy: float = 40.0, up: Vector = (0.0, 1.0, 0.0)) -> Camera:
+    """A camera whose up is +y, unless told otherwise."""
+    return Camera(eye, look_at, up, fovy)
+
+
+def light(position: Vector, color: Color = WHITE, attenuation: Vector = (1.0, 0.0, 0.0)) -> Light:
+    """A light, which no distance dims unless told otherwise."""
+    return Light(position, color, attenuation)
+
+
+def scene(
+    view: Camera,
+    bodies: Sequence[tuple[Shape, Pigment | Color, Finish]],
+    lights: Sequence[Light] = (),
+    ambient: Color = WHITE,
+) -> Scene:
+    """A scene of bodies, each with its own pigment (or plain colour) and finish."""
+    pigments = tuple(p if not isinstance(p, tuple) else Solid(p) for _, p, _ in bodies)
+    finishes = tuple(finish for _, _, finish in bodies)
+    objects = tuple(Object(i, i, shape) for i, (shape, _, _) in enumerate(bodies))
+    return Scene(view, ambient, tuple(lights), pigments, finishes, objects)
+
+
+def sphere(center: Vector, radius: float) -> Sphere:
+    """A ball."""
+    return Sphere(center, radius)
+
+
+def floor(height: float = 0.0) -> Polyhedron:
+    """Everything below y = `height`."""
+    return Polyhedron(((0.0, 1.0, 0.0, -height),))
+
+
+def box(low: Vector, high: Vector) -> Polyhedron:
+    """A box along the axes."""
+    planes: list[Plane] = []
+    for axis in range(3):
+        normal = [0.0, 0.0, 0.0]
+        normal[axis] = 1.0
+        planes.append((normal[0], normal[1], normal[2], -high[axis]))
+        planes.append((-normal[0], -normal[1], -normal[2], low[axis]))
+    return Polyhedron(tuple(planes))
+
+
+def scaled(whole: Scene, factor: float) -> Scene:
+    """`whole` times `factor`: every length, with the lights' attenuation and the pigments, so that its picture stays."""
+    from converter.scene.model import Checker, Texmap
+
+    def vector(v: Vector) -> Vector:
+        return (factor * v[0], factor * v[1], factor * v[2])
+
+    def shape(s: Shape) -> Shape:
+        if isinstance(s, Sphere):
+            return Sphere(vector(s.center), factor * s.radius)
+        return Polyhedron(tuple((a, b, c, factor * d) for a, b, c, d in s.planes))
+
+    def pigment(p: Pigment) -> Pigment:
+        if isinstance(p, Checker):
+            return replace(p, size=factor * p.size)
+        if isinstance(p, Texmap):
+            p0, p1 = ((a / factor, b / factor, c / factor, d) for a, b, c, d in (p.p0, p.p1))
+            return replace(p, p0=p0, p1=p1)
+        return p
+
+    def dimmed(source: Light) -> Light:
+        a, b, c = source.attenuation
+        return replace(source, position=vector(source.position), attenuation=(a, b / factor, c / factor**2))
+
+    view = whole.camera
+    return replace(
+        whole,
+        camera=replace(view, eye=vector(view.eye), look_at=vector(view.look_at)),
+        lights=tuple(map(dimmed, whole.lights)),
+        pigments=tuple(map(pigment, whole.pigments)),
+        objects=tuple(replace(o, shape=shape(o.shape)) for o in whole.objects),
+    )
