@@ -7,9 +7,9 @@ from pathlib import Path
 import numpy as np
 
 from converter.scene.model import Checker, Polyhedron, Texmap
-from converter.studies.families.closed_forms import Long, directions, long, two_colors
-from converter.studies.families.scenes import GLOW, WHITE, box, camera, floor, scene, settings
-from converter.studies.family import Case, Family, Truth
+from converter.studies.families.closed_forms import directions, long, two_colors
+from converter.studies.families.scenes import GLOW, NORMAL, camera, floor, on_slope, scene, settings, slope
+from converter.studies.family import Case, Family
 
 _SETTINGS = settings()
 RED, BLUE = (0.9, 0.2, 0.1), (0.1, 0.2, 0.9)
@@ -26,12 +26,10 @@ def _coplanar(length: float) -> Case:
 
 
 def _nearly_coplanar(apart: float) -> Case:
-    """The floor that is higher by a hair comes second in the file."""
-    view = camera((1.0, 5.0, 6.0), (0.0, 1.0, 0.0), 30.0)
-    made = scene(view, [(floor(1.0), BLUE, GLOW), (floor(1.0 + apart), RED, GLOW)])
-    return Case(made, _SETTINGS, np.broadcast_to(np.array(RED), (_SETTINGS.height, _SETTINGS.width, 3)))
-
-
+    """The plane that is higher by a hair comes second in the file."""
+    view = camera(on_slope(14.0, 1.0, 0.25), on_slope(), 30.0, NORMAL)
+    bodies = [(Polyhedron((slope(),)), BLUE, GLOW), (Polyhedron((slope(7 + apart),)), RED, GLOW)]
+    return Case(scene(view, bodies), _SETTINGS, np.broadcast_to(np.array(RED), (_SETTINGS.height, _SETTINGS.width, 3)))
 
 
 def _checker(cells: float) -> Case:
@@ -81,9 +79,9 @@ FAMILIES = (
     ),
     Family(
         "nearly-coplanar",
-        "Two floors, one unit from the origin, nearer and nearer each other: the higher one is seen.",
-        "distance of the floors",
-        tuple(2.0**-power for power in range(3, 52, 3)),
+        "Two slanting floors nearer and nearer each other: the higher one is seen.",
+        "distance of the floors, 7 from the origin",
+        tuple(7 * 2.0**-power for power in range(3, 52, 3)),
         _nearly_coplanar,
     ),
     Family(

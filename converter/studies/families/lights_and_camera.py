@@ -4,22 +4,25 @@ import math
 
 import numpy as np
 
-from converter.scene.model import Checker, Finish, Vector
+from converter.scene.model import Checker, Finish, Polyhedron, Vector
 from converter.studies.families.closed_forms import directions, two_colors, window
 from converter.studies.families.scenes import (
+    ALONG,
     BLACK,
     GLOW,
     MATTE,
+    NORMAL,
     WHITE,
     box,
     camera,
     floor,
     light,
+    on_slope,
     scene,
     settings,
+    slope,
     sphere,
 )
-from converter.scene.model import Polyhedron
 from converter.studies.family import Case, Family
 
 _SETTINGS = settings()
@@ -59,9 +62,11 @@ def _light_inside(depth: float) -> Case:
 
 def _camera_height(height: float) -> Case:
     """Below the horizon is the floor, above it is not."""
-    view = camera((0.0, 1.0 + height, 0.0), (0.0, 1.0 + height, -1.0), 60.0)
+    eye = on_slope(7 + height)
+    view = camera(eye, (eye[0] + ALONG[0], eye[1] + ALONG[1], eye[2] + ALONG[2]), 60.0, NORMAL)
     _, y = window(_SETTINGS)
-    return Case(scene(view, [(floor(1.0), WHITE, GLOW)]), _SETTINGS, two_colors(y < 0, WHITE, BLACK))
+    made = scene(view, [(Polyhedron((slope(),)), WHITE, GLOW)])
+    return Case(made, _SETTINGS, two_colors(y < 0, WHITE, BLACK))
 
 
 def _fovy(degrees: float) -> Case:
@@ -111,9 +116,9 @@ FAMILIES = (
     ),
     Family(
         "camera-height",
-        "The camera less and less above a floor, one unit from the origin: it is seen up to the horizon.",
-        "height of the camera",
-        tuple(2.0**-power for power in range(1, 52, 3)),
+        "The camera less and less above a slanting floor: it is seen up to the horizon.",
+        "height of the camera, 7 from the origin",
+        tuple(7 * 2.0**-power for power in range(0, 52, 3)),
         _camera_height,
     ),
     Family(

@@ -114,3 +114,23 @@ def scaled(whole: Scene, factor: float) -> Scene:
         pigments=tuple(map(pigment, whole.pigments)),
         objects=tuple(replace(o, shape=shape(o.shape)) for o in whole.objects),
     )
+
+
+# ---- A slanting frame, in which heights are exact ----------------------------------------------------------------------
+
+NORMAL: Vector = (2.0, 3.0, 6.0)
+"""Of slanting planes. Its length is 7, so that heights above them are exact, and nothing is aligned with an axis."""
+ALONG: Vector = (3.0, -2.0, 0.0)
+ASIDE: Vector = (12.0, 18.0, -13.0)
+"""Orthogonal to it, and to each other."""
+
+
+def slope(height: float = 7.0, up: float = 1.0) -> Plane:
+    """The half-space below, or with -1 above, a plane orthogonal to `NORMAL` and that far from the origin."""
+    return (up * NORMAL[0], up * NORMAL[1], up * NORMAL[2], -up * 7 * height)
+
+
+def on_slope(height: float = 7.0, along: float = 0.0, aside: float = 0.0) -> Vector:
+    """The point above the origin's foot on `slope(height)`, and so many times `ALONG` and `ASIDE` off it."""
+    x, y, z = (height / 7 * n + along * a + aside * b for n, a, b in zip(NORMAL, ALONG, ASIDE, strict=True))
+    return (x, y, z)
