@@ -11,6 +11,7 @@ COMMANDS = {
     "pixel": "show the rays behind one pixel, by two methods",
     "methods": "list the methods, and when to use each",
     "chart": "draw the error of every method against its time",
+    "stability": "find where each method fails",
     "doctor": "say what works on this machine, and what to install where something does not",
 }
 """Every sub-command, a module of this package with `parser() -> Parser` and `run(arguments) -> int`."""
@@ -54,7 +55,7 @@ def _dispatch(words: list[str]) -> int:
 
 
 def _help() -> str:
-    listed = "\n".join(f"  {name:9}{summary}" for name, summary in COMMANDS.items())
+    listed = "\n".join(f"  {name:11}{summary}" for name, summary in COMMANDS.items())
     return f"""usage: whitted COMMAND ...
 
 Draws the course's ray tracing scenes with Mitsuba 3 and with a native tracer, and checks one against the other.

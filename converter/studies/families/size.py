@@ -40,13 +40,18 @@ def still_picture() -> Truth:
     return np.asarray(NativeRenderer("long double").render(still_life(), _SETTINGS).pixels, dtype=np.float64)
 
 
+_EDGES = 0.0025
+"""Share of the pixels, 4 of them, through which an edge or a shadow's runs so near the middle that single precision
+cannot tell the sides, at whatever size."""
+
+
 def _size(factor: float) -> Case:
-    return Case(scaled(still_life(), factor), _SETTINGS, still_picture())
+    return Case(scaled(still_life(), factor), _SETTINGS, still_picture(), _EDGES)
 
 
 def _position(distance: float) -> Case:
     # Whole cells, an even number of them, so that the checker's colours stay.
-    return Case(moved(still_life(), (distance, 2 * distance, -distance)), _SETTINGS, still_picture())
+    return Case(moved(still_life(), (distance, 2 * distance, -distance)), _SETTINGS, still_picture(), _EDGES)
 
 
 def moved(whole: Scene, way: Vector) -> Scene:

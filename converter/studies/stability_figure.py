@@ -1,0 +1,184 @@
+"""Draws the stability study: a panel a family, the share of wrong pixels over the stressed number, a line a method."""
+
+import math
+import textwrap
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from converter.studies.chart_figure import DOTS, ErrorScale, error_scale, percent
+from converter.studies.stability import FamilyStudy
+from converter.studies.stability_report import number
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+COLUMNS = 3
+PANEL, NAMES, ROW = 3.1, 1.75, 2.5
+"""Inches: a panel's width, the room for names to its right, and a row's height."""
+NAME = 6.5
+"""Size of a method's name, in points."""
+STYLES: tuple[dict[str, Any], ...] = (
+    {"ls": "-", "lw": 2.6, "color": "0.78"},
+    {"ls": "-", "lw": 0.9, "color": "black"},
+    {"ls": (0, (4, 2)), "lw": 0.9, "color": "black"},
+    {"ls": (0, (1, 1.5)), "lw": 1.2, "color": "black"},
+    {"ls": (0, (6, 1.5, 1, 1.5)), "lw": 0.9, "color": "black"},
+    {"ls": "-", "lw": 0.9, "color": "0.45"},
+    {"ls": (0, (4, 2)), "lw": 0.9, "color": "0.45"},
+    {"ls": (0, (1, 1.5)), "lw": 1.2, "color": "0.45"},
+)
+"""The lines of a panel in turn, in black and grey: names at their ends tell them apart, and no marks, for there are
+thousands of points."""
+
+
+@dataclass(frozen=True, slots=True)
+class Line:
+    """Methods that do the same throughout: their shares of wrong pixels by value, and where they fail first."""
+
+    names: tuple[str, ...]
+    values: tuple[float, ...]
+    shares: tuple[float, ...]
+    first_failures: tuple[int, ...]
+
+
+def lines(study: FamilyStudy) -> list[Line]:
+    """The lines of a family's panel; methods whose lines would lie on each other share one."""
+    groups: dict[tuple[tuple[float, ...], tuple[float, ...], tuple[int, ...]], list[str]] = {}
+    for method, outcomes in study.outcomes.items():
+        if outcomes:
+            values, shares = tuple(o.value for o in outcomes), tuple(o.share for o in outcomes)
+            groups.setdefault((values, shares, tuple(study.first_failures(method))), []).append(method)
+    return [Line(tuple(names), *key) for key, names in groups.items()]
+
+
+def draw_stability(studies: Sequence[FamilyStudy], file: Path) -> None:
+    """Draw the study into `file`, as SVG or PNG by its ending, at once and not atomically.
+
+    Raises:
+        OSError: it cannot be written.
+
+    """
+    import matplotlib as mpl
+
+    # Text stays text, and the same figures give the same file.
+    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "whitted", "axes.linewidth": 0.6}):
+        ending = file.suffix.lower()
+        metadata = {"Date": None} if ending == ".svg" else {}
+        stability_figure(studies).savefig(file, format=ending[1:], dpi=DOTS, metadata=metadata)
+
+
+def stability_figure(studies: Sequence[FamilyStudy]) -> "Figure":
+    """The study as a matplotlib figure."""
+    from matplotlib.figure import Figure
+
+    columns = min(COLUMNS, len(studies))
+    rows = math.ceil(len(studies) / columns)
+    width, height = columns * (PANEL + NAMES), rows * ROW
+    figure = Figure((width, height))
+    for k, study in enumerate(studies):
+        row, column = divmod(k, columns)
+        left = column * (PANEL + NAMES) + 0.55
+        bottom = height - (row + 1) * ROW + 0.45
+        axes = figure.add_axes((left / width, bottom / height, (PANEL - 0.6) / width, (ROW - 1.15) / height))
+        _draw_panel(axes, study)
+    return figure
+
+
+def _draw_panel(axes: "Axes", study: FamilyStudy) -> None:
+    family, drawn = study.family, lines(study)
+    scale = error_scale([share for line in drawn for share in line.shares], [0.0])
+    axes.set_title(family.name, fontsize=8, fontweight="bold", loc="left", pad=25)
+    about = textwrap.fill(family.about, 88)
+    axes.text(0, 1.03, about, fontsize=5.5, transform=axes.transAxes, va="bottom", color="0.2")
+    _scale_axes(axes, study, scale)
+    for line, style in zip(drawn, STYLES * len(drawn), strict=False):
+        y = [scale.place(share) for share in line.shares]
+        axes.plot(line.values, y, zorder=3, clip_on=False, **style)
+        failing = list(line.first_failures)
+        marked = [line.values[i] for i in failing], [y[i] for i in failing]
+        axes.plot(*marked, "x", color="black", ms=8, mew=1.3, zorder=4, clip_on=False)
+    _name_lines(axes, drawn, scale)
+
+
+def _scale_axes(axes: "Axes", study: FamilyStudy, scale: ErrorScale) -> None:
+    values = study.family.values
+    axes.set_xscale("log")
+    axes.set_yscale("log")
+    room = (max(values) / min(values)) ** 0.03
+    axes.set_xlim(values[0] / room, values[-1] * room)
+    if values[0] > values[-1]:
+        axes.set_xlim(values[0] * room, values[-1] / room)
+    axes.set_ylim(scale.bottom, scale.high)
+    axes.minorticks_off()
+    decades = range(round(math.log10(scale.low)), round(math.log10(scale.high)) + 1)
+    ticks, labels = [10.0**power for power in decades], [percent(10.0**power) for power in decades]
+    if scale.zero is not None:
+        ticks, labels = [scale.zero, *ticks], ["0", *labels]
+        axes.axhline(scale.low, color="0.5", lw=0.6, ls=(0, (6, 3)), zorder=0)
+    kept = [(tick, label) for tick, label in zip(ticks, labels, strict=True) if tick <= 1]
+    axes.set_yticks([tick for tick, _ in kept], [label for _, label in kept], fontsize=6)
+    shown = values if len(values) <= 7 else values[:: math.ceil(len(values) / 7)]
+    axes.set_xticks(shown, [number(value) for value in shown], fontsize=6)
+    axes.set_xlabel(study.family.stress, fontsize=6.5, labelpad=1.5)
+
+
+def _name_lines(axes: "Axes", drawn: Sequence[Line], scale: ErrorScale) -> None:
+    """Each name to the right of its line's end, and a thin line from there where others push it away."""
+    texts = [textwrap.fill(", ".join(line.names), 27, break_on_hyphens=False) for line in drawn]
+    height = axes.get_position().height * axes.figure.get_figheight() * 72
+    ends = [_height_of(scale, line.shares[-1]) * height for line in drawn]
+    sizes = [(text.count("\n") + 1) * (NAME + 1.2) + 1.5 for text in texts]
+    for text, end, place in zip(texts, ends, spread(ends, sizes), strict=True):
+        across = {"xycoords": axes.transAxes, "textcoords": axes.transAxes, "annotation_clip": False}
+        axes.annotate(
+            text,
+            (1.01, end / height),
+            (1.06, place / height),
+            fontsize=NAME,
+            va="center",
+            ha="left",
+            linespacing=1.05,
+            arrowprops={"arrowstyle": "-", "lw": 0.4, "color": "0.4", "shrinkA": 1, "shrinkB": 0, "relpos": (0, 0.5)},
+            **across,
+        )
+
+
+def _height_of(scale: ErrorScale, share: float) -> float:
+    """Where a share is drawn: 0 is the axis's lower end, 1 its upper."""
+    return math.log(scale.place(share) / scale.bottom) / math.log(scale.high / scale.bottom)
+
+
+def spread(places: Sequence[float], sizes: Sequence[float]) -> list[float]:
+    """Centres for things of these sizes, in the order of the places they would like, none on another, near those.
+
+    Neighbours that overlap become one block, around the mean of what its members would like, until none do.
+    """
+    order = sorted(range(len(places)), key=lambda i: places[i])
+    blocks: list[list[int]] = []
+    for i in order:
+        blocks.append([i])
+        while len(blocks) > 1 and _top(blocks[-2], places, sizes) > _bottom(blocks[-1], places, sizes):
+            last = blocks.pop()
+            blocks[-1] += last
+    result = [0.0] * len(places)
+    for block in blocks:
+        low = _bottom(block, places, sizes)
+        for i in block:
+            result[i] = low + sizes[i] / 2
+            low += sizes[i]
+    return result
+
+
+def _bottom(block: Sequence[int], places: Sequence[float], sizes: Sequence[float]) -> float:
+    # Where the first would have to begin for each to be where it likes, on average.
+    before = np.cumsum([0.0, *(sizes[i] for i in block)])
+    return float(np.mean([places[i] - sizes[i] / 2 - below for i, below in zip(block, before, strict=False)]))
+
+
+def _top(block: Sequence[int], places: Sequence[float], sizes: Sequence[float]) -> float:
+    return _bottom(block, places, sizes) + sum(sizes[i] for i in block)

@@ -1,0 +1,162 @@
+"""A process that draws pictures for this one, so that no method can take it down, hang it, or eat up its memory."""
+
+import contextlib
+import multiprocessing
+import os
+import sys
+from multiprocessing.connection import Connection
+from types import TracebackType
+from typing import Any
+
+import numpy as np
+
+from converter.compare.metrics import Pixels
+from converter.scene.model import Scene
+from converter.scene.settings import Settings
+
+MEMORY = 8 << 30
+"""Bytes of data that the process may have."""
+STARTING = 60.0
+"""Seconds that it may take to start and to load what a first picture needs, beside the picture's own."""
+
+
+class DrawingFailed(Exception):  # noqa: N818 - what it says
+    """A method did not draw its picture; the message says why."""
+
+
+class TookTooLong(DrawingFailed):
+    """Nor had it when its time was over."""
+
+
+class Worker:
+    """Draws in a process of its own, which starts with the first picture, and anew after one that did not end well."""
+
+    def __init__(self) -> None:
+        self._process: Any = None
+        self._pipe: Connection | None = None
+
+    def render(self, method: str, variant: str | None, scene: Scene, settings: Settings, seconds: float) -> Pixels:
+        """The picture of `scene` by a method, by its name.
+
+        Raises:
+            DrawingFailed: there is none, for a reason that the method gave, or since its process ended.
+            TookTooLong: there is none after so many seconds.
+            KeyboardInterrupt: Ctrl-C; the process is gone then.
+
+        """
+        patience = seconds
+        try:
+            if self._pipe is None:
+                self._start()
+                patience += STARTING
+            assert self._pipe is not None
+            self._pipe.send((method, variant, scene, settings))
+            if not self._pipe.poll(patience):
+                self.stop()
+                raise TookTooLong(f"no picture within {seconds:g} s")
+            drawn = self._pipe.recv()
+        except (EOFError, ConnectionError):
+            code = self._exit_code()
+            self.stop()
+            raise DrawingFailed(f"its process ended: {_why(code)}") from None
+        except KeyboardInterrupt:
+            self.stop()
+            raise
+        if isinstance(drawn, str):
+            raise DrawingFailed(drawn)
+        pixels: Pixels = drawn
+        return pixels
+
+    def stop(self) -> None:
+        """End the process."""
+        if self._process is not None:
+            self._process.kill()
+            self._process.join()
+            self._process = None
+        if self._pipe is not None:
+            self._pipe.close()
+            self._pipe = None
+
+    def __enter__(self) -> "Worker":
+        return self
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self.stop()
+
+    def _start(self) -> None:
+        # Not forked: the threads of Dr.Jit do not survive that.
+        context = multiprocessing.get_context("spawn")
+        self._pipe, theirs = context.Pipe()
+        self._process = context.Process(target=_work, args=(theirs,), daemon=True)
+        self._process.start()
+        theirs.close()
+
+    def _exit_code(self) -> int | None:
+        self._process.join(5.0)
+        code: int | None = self._process.exitcode
+        return code
+
+
+def _why(code: int | None) -> str:
+    if code is not None and code < 0:
+        import signal
+
+        with contextlib.suppress(ValueError):
+            return signal.Signals(-code).name
+    return f"exit status {code}"
+
+
+# ---- In the other process --------------------------------------------------------------------------------------------
+
+
+def _work(pipe: Connection) -> None:
+    """Draw what is asked for, until the other end is closed."""
+    import signal
+
+    # Ctrl-C goes to both processes: the other one decides.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    _limit_memory()
+    # Libraries that warn of a scene's numbers, or abort, write what would only spoil the progress bar.
+    silence = os.open(os.devnull, os.O_WRONLY)
+    for stream in (sys.stdout, sys.stderr):
+        with contextlib.suppress(AttributeError, OSError, ValueError):
+            stream.flush()
+            os.dup2(silence, stream.fileno())
+    renderers: dict[tuple[str, str | None], Any] = {}
+    while True:
+        try:
+            method, variant, scene, settings = pipe.recv()
+        except EOFError:
+            return
+        pipe.send(_draw(renderers, method, variant, scene, settings))
+
+
+def _draw(
+    renderers: dict[tuple[str, str | None], Any], name: str, variant: str | None, scene: Scene, settings: Settings
+) -> Pixels | str:
+    """The picture, or why there is none. A method that raises whatever error has failed: to find that is the aim."""
+    from converter.renderers.methods import find_method
+
+    try:
+        method = find_method(name)
+        if (name, variant) not in renderers:
+            renderers[name, variant] = method.renderer(variant)
+        rendering = renderers[name, variant].render(scene, method.settings(settings))
+        return np.array(rendering.pixels, dtype=np.float32)
+    except MemoryError:
+        return "not enough memory"
+    except Exception as error:
+        return f"{type(error).__name__}: {error}".splitlines()[0]
+
+
+def _limit_memory() -> None:
+    try:
+        import resource
+
+        _, hard = resource.getrlimit(resource.RLIMIT_DATA)
+        most = MEMORY if hard == resource.RLIM_INFINITY else min(MEMORY, hard)
+        resource.setrlimit(resource.RLIMIT_DATA, (most, hard))
+    except (ImportError, OSError, ValueError):
+        pass  # a system without such limits
