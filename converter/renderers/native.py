@@ -7,6 +7,7 @@ from types import ModuleType
 from typing import Any, Literal
 
 from converter.renderers.base import Interrupted, Progress, RendererUnavailable, Rendering
+from converter.scene.coplanar import with_planes_shared
 from converter.scene.model import Checker, Object, Pigment, Scene, Solid, Sphere
 from converter.scene.needs import SceneNeeds, scene_needs
 from converter.scene.settings import Settings
@@ -146,7 +147,7 @@ def build_scene(scene: Scene, needs: SceneNeeds) -> Any:
     for i in needs.finishes:
         f = scene.finishes[i]
         finishes[i] = native.add_finish(f.ka, f.kd, f.ks, f.alpha, f.kr, f.kt, needs.etas[i])
-    for o, planes in zip(scene.objects, needs.planes, strict=True):
+    for o, planes in zip(with_planes_shared(scene).objects, needs.planes, strict=True):
         _add_object(native, o, planes, pigments[o.pigment], finishes[o.finish])
     return native
 

@@ -3,11 +3,11 @@
 import math
 import textwrap
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from itertools import accumulate
 from pathlib import Path
+from statistics import mean
 from typing import TYPE_CHECKING, Any
-
-import numpy as np
 
 from converter.studies.chart_figure import DOTS, ErrorScale, error_scale, percent
 from converter.studies.stability import FamilyStudy
@@ -80,18 +80,19 @@ def stability_figure(studies: Sequence[FamilyStudy]) -> "Figure":
     rows = math.ceil(len(studies) / columns)
     width, height = columns * (PANEL + NAMES), rows * ROW
     figure = Figure((width, height))
+    shares = [share for study in studies for line in lines(study) for share in line.shares]
+    scale = replace(error_scale(shares, [0.0]), high=1.4)
     for k, study in enumerate(studies):
         row, column = divmod(k, columns)
         left = column * (PANEL + NAMES) + 0.55
         bottom = height - (row + 1) * ROW + 0.45
         axes = figure.add_axes((left / width, bottom / height, (PANEL - 0.6) / width, (ROW - 1.15) / height))
-        _draw_panel(axes, study)
+        _draw_panel(axes, study, scale)
     return figure
 
 
-def _draw_panel(axes: "Axes", study: FamilyStudy) -> None:
+def _draw_panel(axes: "Axes", study: FamilyStudy, scale: ErrorScale) -> None:
     family, drawn = study.family, lines(study)
-    scale = error_scale([share for line in drawn for share in line.shares], [0.0])
     axes.set_title(family.name, fontsize=8, fontweight="bold", loc="left", pad=25)
     about = textwrap.fill(family.about, 88)
     axes.text(0, 1.03, about, fontsize=5.5, transform=axes.transAxes, va="bottom", color="0.2")
@@ -115,14 +116,13 @@ def _scale_axes(axes: "Axes", study: FamilyStudy, scale: ErrorScale) -> None:
         axes.set_xlim(values[0] * room, values[-1] / room)
     axes.set_ylim(scale.bottom, scale.high)
     axes.minorticks_off()
-    decades = range(round(math.log10(scale.low)), round(math.log10(scale.high)) + 1)
-    ticks, labels = [10.0**power for power in decades], [percent(10.0**power) for power in decades]
-    if scale.zero is not None:
-        ticks, labels = [scale.zero, *ticks], ["0", *labels]
-        axes.axhline(scale.low, color="0.5", lw=0.6, ls=(0, (6, 3)), zorder=0)
-    kept = [(tick, label) for tick, label in zip(ticks, labels, strict=True) if tick <= 1]
-    axes.set_yticks([tick for tick, _ in kept], [label for _, label in kept], fontsize=6)
-    shown = values if len(values) <= 7 else values[:: math.ceil(len(values) / 7)]
+    ticks = [10.0**power for power in range(round(math.log10(scale.low)), 1)]
+    axes.set_yticks([scale.place(0), *ticks], ["0", *map(percent, ticks)], fontsize=6)
+    axes.axhline(scale.low, color="0.5", lw=0.6, ls=(0, (6, 3)), zorder=0)
+    shown = [values[0]]
+    for value in values:
+        if abs(math.log(value / shown[-1])) > abs(math.log(values[-1] / values[0])) / 7.5:
+            shown.append(value)
     axes.set_xticks(shown, [number(value) for value in shown], fontsize=6)
     axes.set_xlabel(study.family.stress, fontsize=6.5, labelpad=1.5)
 
@@ -133,7 +133,7 @@ def _name_lines(axes: "Axes", drawn: Sequence[Line], scale: ErrorScale) -> None:
     height = axes.get_position().height * axes.figure.get_figheight() * 72
     ends = [_height_of(scale, line.shares[-1]) * height for line in drawn]
     sizes = [(text.count("\n") + 1) * (NAME + 1.2) + 1.5 for text in texts]
-    for text, end, place in zip(texts, ends, spread(ends, sizes), strict=True):
+    for text, end, place in zip(texts, ends, spread(ends, sizes, height + NAME), strict=True):
         across = {"xycoords": axes.transAxes, "textcoords": axes.transAxes, "annotation_clip": False}
         axes.annotate(
             text,
@@ -153,32 +153,29 @@ def _height_of(scale: ErrorScale, share: float) -> float:
     return math.log(scale.place(share) / scale.bottom) / math.log(scale.high / scale.bottom)
 
 
-def spread(places: Sequence[float], sizes: Sequence[float]) -> list[float]:
-    """Centres for things of these sizes, in the order of the places they would like, none on another, near those.
+def spread(places: Sequence[float], sizes: Sequence[float], ceiling: float) -> list[float]:
+    """Centres for things of these sizes, in the order of the places they would like, near those, none on another.
 
-    Neighbours that overlap become one block, around the mean of what its members would like, until none do.
+    Neighbours that overlap become one block, around the mean of what its members would like, until none do. None rises
+    above the ceiling.
     """
-    order = sorted(range(len(places)), key=lambda i: places[i])
+
+    def bottom(block: Sequence[int]) -> float:
+        # Where the first would have to begin for each to be where it likes, on average.
+        before = accumulate((sizes[i] for i in block), initial=0.0)
+        liked = mean(places[i] - sizes[i] / 2 - below for i, below in zip(block, before, strict=False))
+        return min(liked, ceiling - sum(sizes[i] for i in block))
+
     blocks: list[list[int]] = []
-    for i in order:
+    for i in sorted(range(len(places)), key=lambda i: places[i]):
         blocks.append([i])
-        while len(blocks) > 1 and _top(blocks[-2], places, sizes) > _bottom(blocks[-1], places, sizes):
+        while len(blocks) > 1 and bottom(blocks[-2]) + sum(sizes[k] for k in blocks[-2]) > bottom(blocks[-1]):
             last = blocks.pop()
             blocks[-1] += last
     result = [0.0] * len(places)
     for block in blocks:
-        low = _bottom(block, places, sizes)
+        low = bottom(block)
         for i in block:
             result[i] = low + sizes[i] / 2
             low += sizes[i]
     return result
-
-
-def _bottom(block: Sequence[int], places: Sequence[float], sizes: Sequence[float]) -> float:
-    # Where the first would have to begin for each to be where it likes, on average.
-    before = np.cumsum([0.0, *(sizes[i] for i in block)])
-    return float(np.mean([places[i] - sizes[i] / 2 - below for i, below in zip(block, before, strict=False)]))
-
-
-def _top(block: Sequence[int], places: Sequence[float], sizes: Sequence[float]) -> float:
-    return _bottom(block, places, sizes) + sum(sizes[i] for i in block)

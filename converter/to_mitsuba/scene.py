@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from converter.scene.coplanar import with_planes_shared
 from converter.scene.model import Scene
 from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings
@@ -31,6 +32,7 @@ def scene_description(
         PolyhedronError, ValueError: as `shapes` has it.
 
     """
+    scene = with_planes_shared(scene)
     needs = scene_needs(scene, settings)
     geometry = exact_surfaces(scene, needs)
     found: dict[str, Any] = {}
