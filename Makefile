@@ -2,6 +2,7 @@
 # make test     run the tests
 # make check    run the linters, the type checker, and the compiler with warnings as errors
 # make figures  print the figures of the README, and draw its chart
+# make stability  find where each method fails, and write docs/stability.md
 # make fuzz     look for inputs that fail, for SECONDS; what it finds is left in out/fuzz
 #
 # Each sets up .venv first, where it is missing or older than what it was made from.
@@ -17,7 +18,7 @@ BIN := .venv/bin
 SOURCES := pyproject.toml CMakeLists.txt $(wildcard native_tracer/src/*)
 CPP := $(wildcard native_tracer/src/*.cpp native_tracer/src/*.h)
 
-.PHONY: render test check figures fuzz clean
+.PHONY: render test check figures stability fuzz clean
 .DELETE_ON_ERROR:
 
 # Status 1 of the comparison says that the pictures differ, which is no failure to render.
@@ -47,6 +48,10 @@ figures: .venv/.installed
 
 fuzz: .venv/.fuzzer
 	$(BIN)/python fuzzing/fuzz_scenes.py $(SECONDS)
+
+stability: .venv/.installed
+	@mkdir -p docs
+	$(BIN)/whitted stability --docs docs
 
 clean:
 	rm -rf build out .venv

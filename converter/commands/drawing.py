@@ -2,6 +2,7 @@
 
 import time
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from converter.commands.notes import load_with_notices, say
 from converter.commands.progress import ProgressBar
@@ -9,13 +10,23 @@ from converter.images.write import check_writable, write_image
 from converter.renderers.base import Interrupted, Renderer, Rendering
 from converter.scene.settings import Settings
 
+if TYPE_CHECKING:
+    from converter.renderers.methods import Method
+
 
 def draw(
-    renderer: Renderer, scene_file: Path, out: Path, settings: Settings, quiet: bool = False, keep_partial: bool = False
+    renderer: Renderer,
+    scene_file: Path,
+    out: Path,
+    settings: Settings,
+    quiet: bool = False,
+    keep_partial: bool = False,
+    method: "Method | None" = None,
 ) -> tuple[Rendering, dict[str, float]]:
     """Draw a scene into an image file, which appears whole or not at all; return the picture and seconds by stage.
 
-    With `keep_partial`, Ctrl-C writes what is finished before `Interrupted` goes on to the caller.
+    With the `method` that the renderer belongs to, regions are named in which it is known to fail. With
+    `keep_partial`, Ctrl-C writes what is finished before `Interrupted` goes on to the caller.
 
     Raises:
         SceneError: the scene is no scene.
@@ -26,7 +37,7 @@ def draw(
     """
     check_writable(out)
     started = time.perf_counter()
-    scene = load_with_notices(scene_file, settings, quiet)
+    scene = load_with_notices(scene_file, settings, quiet, method)
     read = time.perf_counter()
     with ProgressBar(out.name, quiet) as progress:
         try:

@@ -95,6 +95,9 @@ def _print(found: dict[str, Any]) -> None:
     )
     for notice in found["notices"]:
         print(f"\nnote: {notice}")
+    for warnings in found["warnings"].values():
+        for warning in warnings:
+            print(f"\nwarning: {warning}")
 
 
 def _overview(found: dict[str, Any]) -> list[tuple[str, str]]:

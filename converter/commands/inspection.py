@@ -46,7 +46,20 @@ def inspect_scene(scene: Scene, settings: Settings) -> dict[str, Any]:
         },
         "cutoff": asdict(cutoff_bound(scene, settings)),
         "notices": scene_notices(scene, settings),
+        "warnings": _warnings(scene, settings),
     }
+
+
+def _warnings(scene: Scene, settings: Settings) -> dict[str, tuple[str, ...]]:
+    """Where methods are known to fail with the scene, by their names; a method for each arithmetic."""
+    from converter.renderers.methods import METHODS, Method
+    from converter.scene.warnings import arithmetic_of, method_warnings
+
+    methods: dict[str | None, Method] = {}
+    for method in METHODS.values():
+        methods.setdefault(arithmetic_of(method), method)
+    found = {method.name: method_warnings(scene, settings, method) for method in methods.values()}
+    return {name: warnings for name, warnings in found.items() if warnings}
 
 
 def _pigments(scene: Scene) -> list[dict[str, Any]]:

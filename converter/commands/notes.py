@@ -1,10 +1,14 @@
 """What a command tells on stderr besides errors."""
 
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from converter.commands.exits import tell
 from converter.scene.model import Scene
 from converter.scene.settings import Settings
+
+if TYPE_CHECKING:
+    from converter.renderers.methods import Method
 
 
 def say(message: str, quiet: bool = False) -> None:
@@ -13,8 +17,10 @@ def say(message: str, quiet: bool = False) -> None:
         tell(message)
 
 
-def load_with_notices(path: str | Path, settings: Settings, quiet: bool = False) -> Scene:
-    """The scene in a file; what is worth knowing about how it is read goes to stderr.
+def load_with_notices(
+    path: str | Path, settings: Settings, quiet: bool = False, method: "Method | None" = None
+) -> Scene:
+    """The scene in a file; what is worth knowing about how it is read, and drawn by `method`, goes to stderr.
 
     Raises:
         SceneError: the file is no scene.
@@ -28,4 +34,9 @@ def load_with_notices(path: str | Path, settings: Settings, quiet: bool = False)
 
         for notice in scene_notices(scene, settings):
             say(f"note: {notice}")
+        if method is not None:
+            from converter.scene.warnings import method_warnings
+
+            for warning in method_warnings(scene, settings, method):
+                say(f"warning: {warning}")
     return scene

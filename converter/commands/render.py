@@ -42,7 +42,9 @@ def run(arguments: argparse.Namespace) -> int:
 
     check_json(arguments.json)
     quiet, settings = arguments.quiet, method.settings
-    rendering, stages = draw(method.renderer, arguments.scene, arguments.out, settings, quiet, arguments.keep_partial)
+    rendering, stages = draw(
+        method.renderer, arguments.scene, arguments.out, settings, quiet, arguments.keep_partial, arguments.method
+    )
     seconds = sum(stages.values())
     say(f"{arguments.out}: {settings.width} x {settings.height}, {method.name}, {seconds:.2f} s", quiet)
     if arguments.stats:

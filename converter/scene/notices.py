@@ -3,10 +3,13 @@
 from converter.scene.model import Scene
 from converter.scene.needs import is_index
 from converter.scene.settings import Settings
+from converter.scene.warnings import scene_warnings
 
 
 def scene_notices(scene: Scene, settings: Settings) -> list[str]:
-    """One line for each reading of the scene that is a choice: `file:line: finish 2: ior 1.45 is above 1, ...`."""
+    """One line for each reading of the scene that is a choice: `file:line: finish 2: ior 1.45 is above 1, ...`, and for
+    each of its `scene_warnings`.
+    """
     notices = []
     for k in sorted({o.finish for o in scene.objects}):
         finish = scene.finishes[k]
@@ -15,4 +18,4 @@ def scene_notices(scene: Scene, settings: Settings) -> list[str]:
             place = f"{scene.file or 'scene'}{f':{line}' if line else ''}: finish {k}"
             reading = "so it is read as the material's own index, n2/n1; --ior ratio reads it as n1/n2"
             notices.append(f"{place}: ior {finish.ior:g} is above 1, {reading}")
-    return notices
+    return [*notices, *scene_warnings(scene, settings)]

@@ -4,6 +4,7 @@ import math
 import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
+from io import StringIO
 from itertools import accumulate
 from pathlib import Path
 from statistics import mean
@@ -12,14 +13,15 @@ from typing import TYPE_CHECKING, Any
 from converter.studies.chart_figure import DOTS, ErrorScale, error_scale, percent
 from converter.studies.stability import FamilyStudy
 from converter.studies.stability_report import number
+from converter.studies.svg import compact
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
 COLUMNS = 3
-PANEL, NAMES, ROW = 3.1, 1.75, 2.5
-"""Inches: a panel's width, the room for names to its right, and a row's height."""
+PANEL, NAMES, ROW, MARGINS = 3.1, 1.75, 2.5, 1.15
+"""Inches: a panel's width, the room for names to its right, a row's height, and what of it is above and below."""
 NAME = 6.5
 """Size of a method's name, in points."""
 STYLES: tuple[dict[str, Any], ...] = (
@@ -66,10 +68,15 @@ def draw_stability(studies: Sequence[FamilyStudy], file: Path) -> None:
     import matplotlib as mpl
 
     # Text stays text, and the same figures give the same file.
-    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "whitted", "axes.linewidth": 0.6}):
-        ending = file.suffix.lower()
-        metadata = {"Date": None} if ending == ".svg" else {}
-        stability_figure(studies).savefig(file, format=ending[1:], dpi=DOTS, metadata=metadata)
+    text_and_frames: dict[Any, Any] = {"font.sans-serif": ["DejaVu Sans"], "axes.linewidth": 0.6}
+    with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "whitted", **text_and_frames}):
+        figure = stability_figure(studies)
+        if file.suffix.lower() == ".svg":
+            text = StringIO()
+            figure.savefig(text, format="svg", metadata={"Date": None})
+            file.write_text(compact(text.getvalue()), encoding="utf-8")
+        else:
+            figure.savefig(file, format="png", dpi=DOTS)
 
 
 def stability_figure(studies: Sequence[FamilyStudy]) -> "Figure":
@@ -86,7 +93,7 @@ def stability_figure(studies: Sequence[FamilyStudy]) -> "Figure":
         row, column = divmod(k, columns)
         left = column * (PANEL + NAMES) + 0.55
         bottom = height - (row + 1) * ROW + 0.45
-        axes = figure.add_axes((left / width, bottom / height, (PANEL - 0.6) / width, (ROW - 1.15) / height))
+        axes = figure.add_axes((left / width, bottom / height, (PANEL - 0.6) / width, (ROW - MARGINS) / height))
         _draw_panel(axes, study, scale)
     return figure
 
@@ -130,21 +137,22 @@ def _scale_axes(axes: "Axes", study: FamilyStudy, scale: ErrorScale) -> None:
 def _name_lines(axes: "Axes", drawn: Sequence[Line], scale: ErrorScale) -> None:
     """Each name to the right of its line's end, and a thin line from there where others push it away."""
     texts = [textwrap.fill(", ".join(line.names), 27, break_on_hyphens=False) for line in drawn]
-    height = axes.get_position().height * axes.figure.get_figheight() * 72
+    height = (ROW - MARGINS) * 72
     ends = [_height_of(scale, line.shares[-1]) * height for line in drawn]
     sizes = [(text.count("\n") + 1) * (NAME + 1.2) + 1.5 for text in texts]
     for text, end, place in zip(texts, ends, spread(ends, sizes, height + NAME), strict=True):
-        across = {"xycoords": axes.transAxes, "textcoords": axes.transAxes, "annotation_clip": False}
         axes.annotate(
             text,
             (1.01, end / height),
             (1.06, place / height),
+            xycoords=axes.transAxes,
+            textcoords=axes.transAxes,
+            annotation_clip=False,
             fontsize=NAME,
             va="center",
             ha="left",
             linespacing=1.05,
             arrowprops={"arrowstyle": "-", "lw": 0.4, "color": "0.4", "shrinkA": 1, "shrinkB": 0, "relpos": (0, 0.5)},
-            **across,
         )
 
 

@@ -8,7 +8,7 @@ from converter.studies.machine import machine, versions
 from converter.studies.stability import FamilyStudy, Outcome
 
 LEGEND = (
-    "the last value that holds, from the easy ones on: no more pixels than may differ from the truth by more than 1/255\n"
+    "the last value that holds, from the easy ones on: no pixel (of those that may not) is off by more than 1/255\n"
     "all: every value of the family; none: not even the easiest; a ... b: where both small and large values are hard"
 )
 

@@ -7,7 +7,7 @@ from converter.studies.family import Family
 
 FAMILIES: Mapping[str, Family] = {
     family.name: family
-    for families in (size.FAMILIES, distance.FAMILIES, contact.FAMILIES, coincidence.FAMILIES, lights_and_camera.FAMILIES)
-    for family in families
+    for module in (size, distance, contact, coincidence, lights_and_camera)
+    for family in module.FAMILIES
 }
 """Every family by its name."""

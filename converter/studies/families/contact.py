@@ -7,7 +7,7 @@ import math
 
 import numpy as np
 
-from converter.scene.model import Plane, Polyhedron, Vector
+from converter.scene.model import Camera, Plane, Polyhedron, Vector
 from converter.studies.families.closed_forms import directions, dot, long
 from converter.studies.families.scenes import (
     ALONG,
@@ -15,6 +15,7 @@ from converter.studies.families.scenes import (
     MATTE,
     NORMAL,
     WHITE,
+    Body,
     camera,
     light,
     on_slope,
@@ -34,7 +35,7 @@ _HEIGHTS = tuple(7 * 2.0**-power for power in range(3, 52, 3))
 
 def _resting(width: float) -> Case:
     """A ball of radius 7, from the side of its shadow's edge."""
-    made = [(_FLOOR, WHITE, MATTE), (sphere(on_slope(14.0), 7.0), _RED, MATTE)]
+    made: list[Body] = [(_FLOOR, WHITE, MATTE), (sphere(on_slope(14.0), 7.0), _RED, MATTE)]
     view = _close_up(on_slope(21.0, 4.0, 1.0), on_slope(), 7 * width)
     return Case(scene(view, made, [light(on_slope(21.0, 6.0, -1.0))]), _SETTINGS, None)
 
@@ -46,7 +47,7 @@ def _touching(width: float) -> Case:
     return Case(scene(view, made, [light(on_slope(14.0, 6.0, -1.0))]), _SETTINGS, None)
 
 
-def _close_up(eye: Vector, place: Vector, width: float):
+def _close_up(eye: Vector, place: Vector, width: float) -> Camera:
     return camera(eye, place, math.degrees(2 * math.atan(0.5 * width / math.dist(eye, place))), NORMAL)
 
 

@@ -1,4 +1,4 @@
-"""Highlights, lights near and far, lights inside bodies; the camera on a surface, wide or narrow, looking straight up."""
+"""Highlights, lights near and far and inside bodies; the camera near a surface, wide or narrow, looking straight up."""
 
 import math
 
@@ -13,6 +13,7 @@ from converter.studies.families.scenes import (
     MATTE,
     NORMAL,
     WHITE,
+    Body,
     box,
     camera,
     floor,
@@ -54,7 +55,7 @@ def _light_distance(distance: float) -> Case:
 def _light_inside(depth: float) -> Case:
     """A light just below a ball's surface: none of it comes out."""
     view = camera((3.0, 4.0, 5.0), (0.0, 1.0, 0.0))
-    bodies = [(sphere((0.0, 1.0, 0.0), 1.0), WHITE, MATTE), (floor(-0.5), WHITE, MATTE)]
+    bodies: list[Body] = [(sphere((0.0, 1.0, 0.0), 1.0), WHITE, MATTE), (floor(-0.5), WHITE, MATTE)]
     made = scene(view, bodies, [light((0.0, 2.0 - depth, 0.0))])
     ground = directions(view, _SETTINGS)[..., 1] < 0
     return Case(made, _SETTINGS, two_colors(ground, (MATTE.ka,) * 3, BLACK))
@@ -131,7 +132,7 @@ FAMILIES = (
     ),
     Family(
         "view-up",
-        "An up vector nearer and nearer the direction of view: what little it differs decides how the picture is turned.",
+        "An up vector nearer and nearer the direction of view: what little it differs decides how the picture turns.",
         "angle, about, in radians",
         tuple(10.0**-power for power in range(14)),
         _view_up,

@@ -5,6 +5,7 @@ from dataclasses import replace
 
 from converter.scene.model import (
     Camera,
+    Checker,
     Color,
     Finish,
     Light,
@@ -16,9 +17,13 @@ from converter.scene.model import (
     Shape,
     Solid,
     Sphere,
+    Texmap,
     Vector,
 )
 from converter.scene.settings import Settings
+
+Body = tuple[Shape, Pigment | Color, Finish]
+"""A shape with its pigment, or a plain colour, and its finish."""
 
 MATTE = Finish(0.2, 0.7, 0.0, 1.0, 0.0, 0.0, 0.0)
 """Ambient and diffuse light only."""
@@ -50,11 +55,11 @@ def light(position: Vector, color: Color = WHITE, attenuation: Vector = (1.0, 0.
 
 def scene(
     view: Camera,
-    bodies: Sequence[tuple[Shape, Pigment | Color, Finish]],
+    bodies: Sequence[Body],
     lights: Sequence[Light] = (),
     ambient: Color = WHITE,
 ) -> Scene:
-    """A scene of bodies, each with its own pigment (or plain colour) and finish."""
+    """A scene of bodies, each with a pigment and a finish of its own."""
     pigments = tuple(p if not isinstance(p, tuple) else Solid(p) for _, p, _ in bodies)
     finishes = tuple(finish for _, _, finish in bodies)
     objects = tuple(Object(i, i, shape) for i, (shape, _, _) in enumerate(bodies))
@@ -83,8 +88,7 @@ def box(low: Vector, high: Vector) -> Polyhedron:
 
 
 def scaled(whole: Scene, factor: float) -> Scene:
-    """`whole` times `factor`: every length, with the lights' attenuation and the pigments, so that its picture stays."""
-    from converter.scene.model import Checker, Texmap
+    """`whole` times `factor`: every length, the lights' attenuation and the pigments, so that its picture stays."""
 
     def vector(v: Vector) -> Vector:
         return (factor * v[0], factor * v[1], factor * v[2])
@@ -116,7 +120,7 @@ def scaled(whole: Scene, factor: float) -> Scene:
     )
 
 
-# ---- A slanting frame, in which heights are exact ----------------------------------------------------------------------
+# ---- A slanting frame, in which heights are exact --------------------------------------------------------------------
 
 NORMAL: Vector = (2.0, 3.0, 6.0)
 """Of slanting planes. Its length is 7, so that heights above them are exact, and nothing is aligned with an axis."""

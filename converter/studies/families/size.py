@@ -1,4 +1,4 @@
-"""Large and small numbers: scenes of any size, far from the origin, and of sizes that have little to do with each other."""
+"""Large and small numbers: scenes of any size, far from the origin, and with large and small things side by side."""
 
 from dataclasses import replace
 from functools import cache
@@ -7,7 +7,19 @@ import numpy as np
 
 from converter.renderers.native import NativeRenderer
 from converter.scene.model import Checker, Finish, Object, Plane, Polyhedron, Scene, Shape, Sphere, Vector
-from converter.studies.families.scenes import GLASS, MATTE, MIRROR, box, camera, floor, light, scaled, scene, settings
+from converter.studies.families.scenes import (
+    GLASS,
+    MATTE,
+    MIRROR,
+    Body,
+    box,
+    camera,
+    floor,
+    light,
+    scaled,
+    scene,
+    settings,
+)
 from converter.studies.family import Case, Family, Truth
 
 GLOSSY = Finish(0.1, 0.6, 0.4, 30.0, 0.25, 0.0, 0.0)
@@ -20,7 +32,7 @@ def still_life() -> Scene:
     Every coordinate is a multiple of 1/256, and the floor's cells are 1 wide.
     """
     view = camera((0.375, 2.5, 7.25), (0.0, 0.75, 0.0))
-    bodies = [
+    bodies: list[Body] = [
         (floor(0.0), Checker((0.9, 0.9, 0.8), (0.2, 0.35, 0.3), 1.0), MATTE),
         (Sphere((-1.25, 1.0, 0.0), 1.0), (0.8, 0.3, 0.2), GLOSSY),
         (Sphere((1.0, 0.75, 1.25), 0.75), (0.0, 0.0, 0.0), replace(GLASS, kr=0.0)),
