@@ -170,9 +170,7 @@ def _add_object(native: Any, o: Object, planes: tuple[int, ...], pigment: int, f
     if isinstance(o.shape, Sphere):
         native.add_sphere(pigment, finish, o.shape.center, o.shape.radius)
     else:
-        # Without a volume, which no scene file may be, a body has no planes with a face.
-        kept = [o.shape.planes[k] for k in planes] or o.shape.planes
-        native.add_polyhedron(pigment, finish, kept)
+        native.add_polyhedron(pigment, finish, [o.shape.planes[k] for k in planes])
 
 
 def _restore_planes(rays: list[dict[str, Any]], needs: SceneNeeds) -> None:
@@ -182,5 +180,5 @@ def _restore_planes(rays: list[dict[str, Any]], needs: SceneNeeds) -> None:
         ray = pending.pop()
         pending.extend(ray["children"])
         hit = ray["hit"]
-        if hit is not None and hit["plane"] is not None and needs.planes[hit["object"]]:
+        if hit is not None and hit["plane"] is not None:
             hit["plane"] = needs.planes[hit["object"]][hit["plane"]]

@@ -32,10 +32,11 @@ class SceneNeeds:
         glossy: a lit surface has ks > 0: highlights are needed.
         max_depth: bounces to follow after the primary ray.
         background: linear RGB of rays that hit nothing.
-        planes: for each object the indices of the planes that have a face, ascending; for a sphere none.
+        planes: for each object the indices of the planes that have a face, ascending; for a sphere none, and all for a
+            polyhedron without a volume.
         boxes: for each object the lower and the upper corner of the box around it, of an unbounded one around its
             vertices (where a face has none, around its point nearest the origin).
-        bounded: for each object whether it is.
+        bounded: for each object whether it is, as far as is known.
 
     """
 
@@ -81,10 +82,18 @@ def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
         glossy=bool(scene.lights) and any(f.ks > 0 for f in used),
         max_depth=max_depth,
         background=scene.ambient if settings.background is None else settings.background,
-        planes=tuple(f.kept if f else () for f in facts),
+        planes=tuple(_planes(o.shape, f) for o, f in zip(scene.objects, facts, strict=True)),
         boxes=tuple((f.low, f.high) if f else _box(o.shape) for o, f in zip(scene.objects, facts, strict=True)),
-        bounded=tuple(f is None or f.bounded for f in facts),
+        bounded=tuple(f is None or (f.solid and f.bounded) for f in facts),
     )
+
+
+def _planes(shape: Shape, facts: "PolyhedronFacts | None") -> tuple[int, ...]:
+    if facts is None:
+        return ()
+    assert isinstance(shape, Polyhedron)
+    # Of what is too thin to have a volume no face is known; no scene file may hold it, but a program's scene may.
+    return facts.kept if facts.solid else tuple(range(len(shape.planes)))
 
 
 def _box(sphere: Shape) -> tuple[Vector, Vector]:
@@ -103,21 +112,20 @@ def _polyhedron_facts(scene: Scene) -> "Sequence[PolyhedronFacts | None]":
 
 
 def depth_limit(finishes: list[Finish], settings: Settings) -> int:
-    """Bounces that are followed after a primary ray where objects have these finishes."""
-    if not any(weight > 0 and weight >= settings.cutoff for f in finishes for weight in (f.kr, f.kt)):
-        return 0
-    return default_depth(finishes, settings.cutoff) if settings.max_depth is None else settings.max_depth
+    """Bounces that are followed after a primary ray where objects have these finishes.
 
-
-def default_depth(finishes: list[Finish], cutoff: float) -> int:
-    """Smallest number of bounces after which every weight is below `cutoff`, within the limits above."""
+    As many as the settings allow, or by default within the limits above, and no more than it takes until every weight
+    is below the cut-off: kernels keep room for so many.
+    """
     largest = max((max(f.kr, f.kt) for f in finishes), default=0.0)
-    if largest == 0:
+    if largest == 0 or largest < settings.cutoff:
         return 0
-    limit = MAX_DEPTH_BRANCHING if any(f.kr > 0 and f.kt > 0 for f in finishes) else MAX_DEPTH
-    if largest >= 1 or cutoff == 0:
+    limit = settings.max_depth
+    if limit is None:
+        limit = MAX_DEPTH_BRANCHING if any(f.kr > 0 and f.kt > 0 for f in finishes) else MAX_DEPTH
+    if largest >= 1 or settings.cutoff == 0:
         return limit
-    return min(limit, math.ceil(math.log(cutoff) / math.log(largest)))
+    return min(limit, math.ceil(math.log(settings.cutoff) / math.log(largest)))
 
 
 def eta(finish: Finish, reading: IorReading) -> float:
