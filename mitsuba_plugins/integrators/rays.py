@@ -118,7 +118,8 @@ def refract(d: Any, n: Any, eta: Any) -> tuple[Any, Any]:
     `eta` is the index on d's side over the index behind. Past the critical angle the direction is the mirrored one.
     """
     cosine = -dr.dot(d, n)
-    cosine2 = 1 - eta * eta * (1 - cosine * cosine)
+    # 1 - eta^2 (1 - cosine^2), without the difference of nearly equal numbers where eta is nearly 1.
+    cosine2 = (1 - eta) * (1 + eta) + dr.square(eta * cosine)
     total = cosine2 < 0
     through = unit(d * eta + n * (eta * cosine - dr.sqrt(dr.maximum(cosine2, 0))))
     return dr.select(total, reflect(d, n), through), total

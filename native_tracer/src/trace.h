@@ -257,7 +257,8 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
         // Snell's law, with the ratio of the index on the ray's side to the index on the other: n1/n2 on the way in,
         // n2/n1 on the way out. Where it has no answer, the transmitted ray follows the mirror direction.
         const L eta = select(hits.inside, one / surface.eta, surface.eta);
-        const L cosine2 = one - eta * eta * (one - cosine * cosine);
+        // 1 - eta^2 (1 - cosine^2), without the difference of nearly equal numbers where eta is nearly 1.
+        const L cosine2 = (one - eta) * (one + eta) + eta * cosine * (eta * cosine);
         const Mask<Real> total = cosine2 < zero;
         const Vector<L> refracted =
             normalize(eta * direction + (eta * cosine - sqrt(max(cosine2, zero))) * surface.normal);
