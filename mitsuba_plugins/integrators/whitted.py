@@ -22,12 +22,15 @@ INTERSECTIONS = ("analytic", "bvh", "mesh", "offset", "ulp")
 ANALYTIC_LIMIT = 32
 """Spheres and planes, together, up to which `intersections` "auto" is "analytic": its kernels grow with them."""
 
-FIRST_BAND, FIRST_BAND_BRANCHING = 1 << 19, 1 << 16
-"""Primary rays traced at once to begin with; trees that branch may take a hundred times longer than others."""
-SMALLEST_BAND, LARGEST_BAND = 1 << 16, 1 << 20
-"""Within these limits the size of a band is adapted ..."""
+FIRST_BAND, SMALLEST_BAND, LARGEST_BAND = 1 << 19, 1 << 16, 1 << 20
+"""Primary rays traced at once to begin with, at least, and at most: within these limits the size of a band is adapted
+..."""
+FIRST_BAND_BRANCHING = SMALLEST_BAND_BRANCHING = 1 << 10
+"""Likewise where rays branch, for a tree may have 2^17 of them."""
 BAND_SECONDS = 0.5
-"""... to this time."""
+"""... to this time ..."""
+BAND_GROWTH = 8
+"""... from one to the next by no more than this, since the top of a picture may be nothing but sky."""
 
 
 class Whitted(mi.SamplingIntegrator):
@@ -300,7 +303,9 @@ class Whitted(mi.SamplingIntegrator):
         self.prepare(scene)
         width, height = sensor.film().crop_size()
         crop_offset = mi.Point2d(sensor.film().crop_offset())
-        rays = FIRST_BAND_BRANCHING if self.branching else FIRST_BAND
+        rays, least = FIRST_BAND, SMALLEST_BAND
+        if self.branching:
+            rays, least = FIRST_BAND_BRANCHING, SMALLEST_BAND_BRANCHING
         first = 0
         while first < height:
             rows = min(height - first, max(1, rays // (width * len(offsets))))
@@ -322,7 +327,7 @@ class Whitted(mi.SamplingIntegrator):
             yield first, color
             first += rows
             share = BAND_SECONDS / max(time.perf_counter() - started, 1e-3)
-            rays = int(min(max(rays * min(share, 4), SMALLEST_BAND), LARGEST_BAND))
+            rays = int(min(max(rays * min(share, BAND_GROWTH), least), LARGEST_BAND))
 
     @staticmethod
     def sample_offsets(spp):
