@@ -1,4 +1,4 @@
-"""Pictures by closed forms, in long double: rays from a camera, what a convex body under a light looks like, checkers."""
+"""Pictures by closed forms, in long double: rays from a camera, a convex body under a light, checkers."""
 
 from collections.abc import Sequence
 

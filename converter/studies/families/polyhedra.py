@@ -5,11 +5,12 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from converter.scene.model import Checker, Finish, Plane, Polyhedron, Vector
+from converter.scene.model import Checker, Color, Finish, Pigment, Plane, Polyhedron, Shape, Vector
 from converter.studies.families.closed_forms import checkered, directions, first_hit, lit, long
 from converter.studies.families.scenes import GLOW, MATTE, WHITE, box, camera, floor, light, scene, settings
 from converter.studies.family import Case, Family
 
+Body = tuple[Shape, Pigment | Color, Finish]
 DECADES = tuple(10.0**-k for k in range(13))
 """1 to 1e-12."""
 HAIRS = tuple(10.0**-k for k in range(1, 16))
@@ -36,10 +37,12 @@ def _body(planes: Sequence[Plane], eye: Vector = EYE, look_at: Vector = (0.0, 0.
 def _sliver(slope: float) -> Case:
     """A wedge of glass above a checkered floor, which it shades."""
     top = (-slope, 1.0, 0.0, -slope)
-    wedge = Polyhedron((top, (0.0, -1.0, 0.0, 0.0), (1.0, 0.0, 0.0, -1.0), (0.0, 0.0, 1.0, -1.0), (0.0, 0.0, -1.0, -1.0)))
+    wedge = Polyhedron(
+        (top, (0.0, -1.0, 0.0, 0.0), (1.0, 0.0, 0.0, -1.0), (0.0, 0.0, 1.0, -1.0), (0.0, 0.0, -1.0, -1.0))
+    )
     glass = Finish(0.1, 0.4, 0.0, 1.0, 0.2, 0.6, 1.5)
     ground = Checker((0.9, 0.8, 0.7), (0.2, 0.3, 0.4), 0.5)
-    bodies = [(wedge, WHITE, glass), (floor(-0.75), ground, MATTE)]
+    bodies: list[Body] = [(wedge, WHITE, glass), (floor(-0.75), ground, MATTE)]
     return Case(scene(camera((1.0, 4.0, 3.0), (0.0, 0.0, 0.0)), bodies, [light(LIGHT)]), settings(), None)
 
 
@@ -130,7 +133,7 @@ def _plate(thickness: float) -> Case:
 FAMILIES: tuple[Family, ...] = (
     Family(
         "slivers",
-        "A wedge of tinted glass above a floor is made ever flatter: its upper and its lower side are nearly one plane.",
+        "A wedge of glass above a floor is made ever flatter: its upper and its lower side are nearly one plane.",
         "slope of the upper side",
         DECADES,
         _sliver,
@@ -187,7 +190,7 @@ FAMILIES: tuple[Family, ...] = (
     ),
     Family(
         "horizon",
-        "A body without end is seen to its horizon through an ever longer lens, its checkerboard growing with the distance.",
+        "A body without end is seen to its horizon through an ever longer lens, its tiles growing with the distance.",
         "distance of what is seen over the height of the eye",
         tuple(10.0**k for k in range(13)),
         _horizon,

@@ -33,7 +33,8 @@ def _balls(kr: Sequence[float], kt: Sequence[float], depth: int) -> Case:
     # As bright as any picture, however many rays there are.
     ka = 0.75 / met.sum()
     bodies = [
-        (sphere((0.0, 0.0, 0.0), RADII[i]), COLORS[i], Finish(ka, 0.0, 0.0, 1.0, kr[i], kt[i], 1.5)) for i in range(count)
+        (sphere((0.0, 0.0, 0.0), RADII[i]), COLORS[i], Finish(ka, 0.0, 0.0, 1.0, kr[i], kt[i], 1.5))
+        for i in range(count)
     ]
     truth = np.broadcast_to(ka * met @ np.array(COLORS), (drawn.height, drawn.width, 3))
     return Case(scene(camera((0.0, 0.0, 0.0), (1.0, 0.5, -2.0)), bodies), drawn, truth)

@@ -7,7 +7,7 @@ from functools import cache
 
 import numpy as np
 
-from converter.scene.model import Camera, Checker, Color, Finish, Polyhedron, Sphere, Vector
+from converter.scene.model import Camera, Checker, Color, Finish, Pigment, Polyhedron, Shape, Sphere, Vector
 from converter.scene.settings import Settings
 from converter.studies.families.closed_forms import Long, checkered, directions, long
 from converter.studies.families.scenes import MIRROR, WHITE, box, camera, scene, settings, sphere
@@ -30,7 +30,10 @@ def _facing(bounces: float) -> Case:
     n = round(bounces)
     view, drawn = camera((0.3, 0.4, 5.25), (0.55, 0.4, 3.25)), settings(max_depth=n)
     mirror = _mirror(n)
-    walls = [(Polyhedron(((0.0, 0.0, 1.0, -0.25),)), TILES, mirror), (Polyhedron(((0.0, 0.0, -1.0, 16.25),)), TILES, mirror)]
+    walls = [
+        (Polyhedron(((0.0, 0.0, 1.0, -0.25),)), TILES, mirror),
+        (Polyhedron(((0.0, 0.0, -1.0, 16.25),)), TILES, mirror),
+    ]
     d, eye = directions(view, drawn), long(view.eye)
     truth = np.zeros(d.shape)
     for k in range(n + 1):
@@ -45,7 +48,10 @@ def _series(bounces: float) -> Case:
     n = round(bounces)
     view, drawn = camera((0.3, 0.4, 5.25), (0.55, 0.4, 3.25)), settings(max_depth=n)
     finish = Finish(0.125, 0.0, 0.0, 1.0, 0.875, 0.0, 0.0)
-    walls = [(Polyhedron(((0.0, 0.0, 1.0, -0.25),)), WHITE, finish), (Polyhedron(((0.0, 0.0, -1.0, 16.25),)), WHITE, finish)]
+    walls = [
+        (Polyhedron(((0.0, 0.0, 1.0, -0.25),)), WHITE, finish),
+        (Polyhedron(((0.0, 0.0, -1.0, 16.25),)), WHITE, finish),
+    ]
     total = 1 - 0.875 ** (n + 1)
     return Case(scene(view, walls), drawn, np.full((drawn.height, drawn.width, 3), total))
 
@@ -75,8 +81,8 @@ def _mirror_box(bounces: float) -> Case:
         p = _folded(eye + t * d)
         # Exactly on the wall.
         on = np.arange(3) == (which // (n + 1))[..., None]
-        p = np.where(on, np.copysign(np.longdouble(HALF), p), p)
-        truth += mirror.ka * checkered(TILES, p)
+        wall: Long = np.copysign(np.longdouble(HALF), p)
+        truth += mirror.ka * checkered(TILES, np.where(on, wall, p))
     return Case(scene(view, room), drawn, truth)
 
 
@@ -90,8 +96,13 @@ def _folded(p: Long) -> Long:
 
 def _corner(zoom: float) -> Case:
     """Three mirrors of a corner send a ray back whichever it meets first; between them nothing may slip out."""
-    view, drawn = camera((3.0, 4.0, 2.5), (0.0, 0.0, 0.0), 40.0 / zoom), settings(background=(0.2, 0.2, 0.2), max_depth=8)
-    walls = [(Polyhedron(((float(i == 0), float(i == 1), float(i == 2), 0.0),)), color, _mirror(3)) for i, color in _TINTS]
+    view, drawn = (
+        camera((3.0, 4.0, 2.5), (0.0, 0.0, 0.0), 40.0 / zoom),
+        settings(background=(0.2, 0.2, 0.2), max_depth=8),
+    )
+    walls = [
+        (Polyhedron(((float(i == 0), float(i == 1), float(i == 2), 0.0),)), color, _mirror(3)) for i, color in _TINTS
+    ]
     d = directions(view, drawn)
     met = (d < 0)[..., None] * np.array([color for _, color in _TINTS])
     truth = 0.25 * met.sum(axis=-2) + 0.2
@@ -121,7 +132,8 @@ def _trapped(bounces: float) -> Case:
     view, drawn = camera((0.0, 0.0, 0.25), (0.0625, 0.0, -0.75), 90.0), settings(24, 18, max_depth=n)
     images = _images(view, replace(drawn, max_depth=None))
     room = _mirror(n)
-    bodies = [*((ball, WHITE, MIRROR) for ball in BALLS), (ROOM, CELLS, room)]
+    bodies: list[tuple[Shape, Pigment | Color, Finish]] = [(ROOM, CELLS, room)]
+    bodies += [(ball, WHITE, MIRROR) for ball in BALLS]
     return Case(scene(view, bodies), drawn, room.ka * images[: n + 1].sum(axis=0))
 
 
@@ -233,7 +245,7 @@ FAMILIES: tuple[Family, ...] = (
     ),
     Family(
         "trapped-ray",
-        "Three mirror balls in a larger one: each bounce makes every error several times as large, so that in the end the "
+        "Three mirror balls in a larger one: each bounce makes every error larger, so that in the end the "
         "last digit of a number decides where a ray goes.",
         "bounces",
         TRAPPED,

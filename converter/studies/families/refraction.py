@@ -95,8 +95,16 @@ MIDDLE: Vector = (0.0, 0.0, 0.0)
 
 def _index(step: float) -> Case:
     """A ball and a prism that bend light ever less."""
-    prism = Polyhedron(((0.6, 0.0, 0.8, -0.5), (-0.8, 0.0, 0.6, -1.5), (0.2, 0.0, -1.0, -0.3), (0.0, 1.0, 0.0, -1.25), (0.0, -1.0, 0.0, -0.75)))
-    bodies = [(sphere((0.75, 0.0, -0.5), 1.0), _clear(1 - step)), (prism, _clear(1 + step))]
+    prism = Polyhedron(
+        (
+            (0.6, 0.0, 0.8, -0.5),
+            (-0.8, 0.0, 0.6, -1.5),
+            (0.2, 0.0, -1.0, -0.3),
+            (0.0, 1.0, 0.0, -1.25),
+            (0.0, -1.0, 0.0, -0.75),
+        )
+    )
+    bodies: list[tuple[Shape, Finish]] = [(sphere((0.75, 0.0, -0.5), 1.0), _clear(1 - step)), (prism, _clear(1 + step))]
     return _glasses(camera(EYE, MIDDLE), bodies, floor(-1.75))
 
 
@@ -123,7 +131,10 @@ def _overlap(depth: float) -> Case:
     """Two balls that share a lens, ever thinner, which fills the picture."""
     lens = math.sqrt(depth)
     view = camera((0.0, 0.0, 4.0), (lens / 7, lens / 15, 0.0), math.degrees(lens / 4))
-    bodies = [(sphere((0.0, 0.0, 1.0 - depth), 1.0), _clear(DENSER)), (sphere((0.0, 0.0, depth - 1.0), 1.0), _clear(DENSER))]
+    bodies = [
+        (sphere((0.0, 0.0, 1.0 - depth), 1.0), _clear(DENSER)),
+        (sphere((0.0, 0.0, depth - 1.0), 1.0), _clear(DENSER)),
+    ]
     return _glasses(view, bodies, Polyhedron(((0.0, 0.0, 1.0, 4.0),)), _about(lens / 4, 4.0))
 
 
