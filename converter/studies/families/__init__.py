@@ -2,12 +2,32 @@
 
 from collections.abc import Mapping
 
-from converter.studies.families import coincidence, contact, distance, lights_and_camera, size
+from converter.studies.families import (
+    coincidence,
+    contact,
+    distance,
+    lights_and_camera,
+    polyhedra,
+    ray_trees,
+    reflection,
+    refraction,
+    size,
+)
 from converter.studies.family import Family
 
 FAMILIES: Mapping[str, Family] = {
     family.name: family
-    for module in (size, distance, contact, coincidence, lights_and_camera)
+    for module in (
+        size,
+        distance,
+        contact,
+        coincidence,
+        polyhedra,
+        reflection,
+        refraction,
+        lights_and_camera,
+        ray_trees,
+    )
     for family in module.FAMILIES
 }
 """Every family by its name."""

@@ -90,7 +90,7 @@ def _folded(p: Long) -> Long:
     """A point of the unfolded space in the box."""
     period = 4 * np.longdouble(HALF)
     q = (p + HALF) % period
-    result: Long = np.where(q <= period / 2, q, period - q) - HALF
+    result: Long = np.where(q <= period / 2, q, period - q) - np.longdouble(HALF)
     return result
 
 
