@@ -190,6 +190,14 @@ def test_a_worker_that_hangs_or_dies_is_replaced(monkeypatch):
 # ---- The families
 
 
+PLANES_COME_AND_GO = {"faces", "near-copies", "touching-planes"}
+"""Families that are about how many faces there are."""
+NO_FILE = {"empty"}
+"""Families of scenes that a file may not hold."""
+CHAOTIC = {"trapped-ray": 40.0}
+"""Families without decades, with the last value up to which the digits of double precision suffice."""
+
+
 @pytest.mark.parametrize("made", FAMILIES.values(), ids=list(FAMILIES))
 def test_a_family_makes_sense(made):
     """Its scenes are scenes, of one structure, and its true pictures have as many pixels as they say."""
@@ -199,9 +207,10 @@ def test_a_family_makes_sense(made):
     structures = set()
     for value in made.values:
         case = made.case(value)
-        assert not check_geometry(case.scene)
+        assert bool(check_geometry(case.scene)) == (made.name in NO_FILE)
         needs = scene_needs(case.scene, case.settings)
-        structures.add((needs.reflects, needs.refracts, needs.branches, needs.lit, needs.glossy, needs.planes))
+        planes = None if made.name in PLANES_COME_AND_GO else needs.planes
+        structures.add((needs.reflects, needs.refracts, needs.branches, needs.lit, needs.glossy, planes))
         assert case.truth is None or case.truth.shape == (case.settings.height, case.settings.width, 3)
         assert case.settings.width * case.settings.height <= 10000
     assert len(structures) == 1
@@ -212,7 +221,8 @@ def test_the_native_tracer_in_double_holds_for_six_decades_at_least(made):
     """By the truth where there is one: from the easiest value on, or over all of a family that is shorter."""
     start = easiest(made, made.values)
     for value in made.values:
-        if 1e-6 * made.values[start] <= value <= 1e6 * made.values[start]:
+        decades = 1e-6 * made.values[start] <= value <= 1e6 * made.values[start]
+        if decades and value <= CHAOTIC.get(made.name, value):
             case = made.case(value)
             truth = case.truth
             if truth is None:

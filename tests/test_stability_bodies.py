@@ -8,6 +8,7 @@ import pytest
 from converter.compare.metrics import LIMIT
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
+from converter.scene.geometry import check_geometry
 from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings
 from converter.studies.families import polyhedra, ray_trees, reflection, refraction
@@ -100,6 +101,15 @@ def test_depth_has_no_room_for_rays_that_the_cutoff_drops():
     assert scene_needs(scene, Settings(max_depth=1000, cutoff=0.0)).max_depth == 1000
     assert scene_needs(scene, Settings(max_depth=1000, cutoff=0.96875**20)).max_depth in (20, 21)
     assert scene_needs(scene, Settings(max_depth=5, cutoff=0.96875**20)).max_depth == 5
+
+
+def test_a_plate_too_thin_for_its_faces_to_be_known_is_drawn(mi):
+    case = FAMILIES["plates"].case(1e-14)
+    assert check_geometry(case.scene)
+    truth = truth_of(case)
+    for intersections in ("analytic", "bvh"):
+        rendering = MitsubaRenderer("llvm_ad_rgb", intersections).render(case.scene, case.settings)
+        assert disagreeing(rendering, truth) == 0
 
 
 def test_planes_of_a_body_without_volume_are_kept():

@@ -142,7 +142,7 @@ FAMILIES: tuple[Family, ...] = (
         "plates",
         "A plate is made ever thinner: the sides that a ray enters and leaves by are hardly apart.",
         "thickness over distance from the origin",
-        HAIRS[:14],
+        HAIRS[:13],
         _plate,
     ),
     Family(
