@@ -187,7 +187,7 @@ class Whitted(mi.SamplingIntegrator):
 
     def _highlight(self, ray: Ray, n, to_light, alpha):
         cosine = dr.dot(n, unit(to_light - ray.d)) if self._materials.blinn else dr.dot(reflect(ray.d, n), to_light)
-        return mi.Float(power(dr.maximum(cosine, 0), alpha))
+        return mi.Float(power(dr.minimum(dr.maximum(cosine, 0), 1), alpha))  # what is rounded above 1 has no bounds
 
     def reflected(self, ray: Ray, hit: Hit) -> Ray:
         """The mirrored ray."""

@@ -52,8 +52,8 @@ class Pinhole(mi.Sensor):
         """
         # Opaque, so that pictures of all sizes share one kernel.
         width, height = (dr.opaque(mi.Float64, size) for size in self.film().size())
-        forward = _unit(self.look_at - self.eye)
-        right = _unit(dr.cross(forward, self.up))
+        forward = _unit(_in_range(self.look_at - self.eye))
+        right = _unit(_in_range(dr.cross(forward, _in_range(self.up))))
         upward = dr.cross(right, forward)
         half_height = dr.tan(dr.deg2rad(self.fovy) * 0.5)
         x = (2 * (position.x + self.pixel_offset) / width - 1) * half_height * (width / height)
@@ -82,6 +82,12 @@ class Pinhole(mi.Sensor):
 
     def to_string(self):
         return f"Pinhole[eye={self.eye}, look_at={self.look_at}, up={self.up}, fovy={self.fovy}]"
+
+
+def _in_range(v):
+    """`v`, made shorter or longer where the square of its length would overflow or vanish."""
+    largest = dr.max(dr.abs(v))
+    return dr.select((largest > 1e-100) & (largest < 1e100), v, v / largest)
 
 
 def _unit(v):
