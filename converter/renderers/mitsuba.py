@@ -2,7 +2,7 @@
 
 import os
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any
@@ -71,10 +71,19 @@ class MitsubaRenderer:
 
     def trace_pixel(self, scene: Scene, settings: Settings, x: int, y: int) -> dict[str, Any]:
         """Trace one pixel; the result is what `NativeRenderer.trace_pixel` documents."""
-        self._start()
-        from converter.renderers.mitsuba_pixel import trace_pixel
+        return self.trace_pixels(scene, settings, [(x, y)])[0]
 
-        return trace_pixel(self._load(scene, settings), settings, x, y)
+    def trace_pixels(self, scene: Scene, settings: Settings, pixels: Sequence[tuple[int, int]]) -> list[dict[str, Any]]:
+        """Trace pixels (column, row), which is faster together; a result for each, as `trace_pixel` has it.
+
+        Raises:
+            ValueError: there are more than 2^20 rays.
+
+        """
+        self._start()
+        from converter.renderers.mitsuba_pixel import trace_pixels
+
+        return trace_pixels(self._load(scene, settings), settings, pixels)
 
     def _start(self) -> str:
         """Load Mitsuba, and return the variant."""

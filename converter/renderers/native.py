@@ -2,6 +2,7 @@
 
 import os
 import time
+from collections.abc import Sequence
 from dataclasses import dataclass
 from types import ModuleType
 from typing import Any, Literal
@@ -91,14 +92,18 @@ class NativeRenderer:
             IndexError: the pixel lies outside the picture.
 
         """
+        return self.trace_pixels(scene, settings, [(x, y)])[0]
+
+    def trace_pixels(self, scene: Scene, settings: Settings, pixels: Sequence[tuple[int, int]]) -> list[dict[str, Any]]:
+        """Trace pixels (column, row); a result for each, as `trace_pixel` has it."""
         needs = scene_needs(scene, settings)
         native_scene = build_scene(scene, needs)
         options = self._options(settings, needs)
-        result: dict[str, Any] = native_module().trace_pixel(
-            native_scene, settings.width, settings.height, x, y, **options
-        )
-        _restore_planes(result["rays"], needs)
-        return result
+        size = settings.width, settings.height
+        results = [native_module().trace_pixel(native_scene, *size, x, y, **options) for x, y in pixels]
+        for result in results:
+            _restore_planes(result["rays"], needs)
+        return results
 
     def _options(self, settings: Settings, needs: SceneNeeds) -> dict[str, Any]:
         return {
