@@ -53,7 +53,7 @@ def test_only_what_is_seen(small_scene: Scene) -> None:
 def test_omissions_name_their_place_and_stand_in_the_file(small_scene: Scene) -> None:
     finishes = (replace(small_scene.finishes[0], ks=0.5, alpha=0.0), *small_scene.finishes[1:])
     scene = replace(small_scene, finishes=finishes, finish_lines=(11, 12, 13, 14), light_lines=(4, 5))
-    found = povray_scene(scene, Settings(max_depth=300, cutoff=0.0))
+    found = povray_scene(scene, Settings(max_depth=300, cutoff=1e-300))
     assert [text.split(":")[0] for text in found.omissions] == [
         "nothing is seen that is farther away than 3.91e+04",
         "rays are followed for 255 bounces, not 300",
