@@ -3,13 +3,25 @@
 from dataclasses import replace
 from pathlib import Path
 
+import numpy as np
 import pytest
 
+from converter.compare.metrics import LIMIT
 from converter.renderers.methods import METHODS
+from converter.renderers.native import NativeRenderer
 from converter.scene.model import Finish
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
-from converter.scene.warnings import arithmetic_of, method_warnings, scene_warnings
+from converter.scene.warnings import (
+    DISTANCE,
+    HIGHLIGHT,
+    HUGE,
+    POSITION,
+    arithmetic_of,
+    method_warnings,
+    scene_warnings,
+)
+from converter.studies.families import FAMILIES
 from converter.studies.families.scenes import (
     GLASS,
     MATTE,
@@ -91,6 +103,29 @@ def test_the_worst_is_named_and_the_others_are_counted():
     (warning,) = [w for w in warnings(made, "mitsuba-mesh") if "origin" in w]
     assert "object 1 is 5e+05 of its radii" in warning
     assert "so are 2 others" in warning
+
+
+@pytest.mark.parametrize(
+    ("family", "limits"),
+    [("position", POSITION), ("huge", HUGE), ("distance", DISTANCE), ("highlight", HIGHLIGHT)],
+)
+@pytest.mark.parametrize(
+    ("arithmetic", "method"), [("float", "native-float"), ("offset", "mitsuba-offset"), ("ulp", "mitsuba-ulp")]
+)
+def test_the_limits_are_where_the_study_finds_them(family, limits, arithmetic, method):
+    """The method holds at the limit, and fails a decade or two beyond it."""
+    made = FAMILIES[family]
+
+    def holds(value):
+        case = made.case(value)
+        truth = case.truth
+        if truth is None:
+            truth = np.asarray(NativeRenderer("long double").render(case.scene, case.settings).pixels)
+        drawn = np.asarray(METHODS[method].renderer("llvm_ad_rgb").render(case.scene, case.settings).pixels)
+        return (~(np.abs(drawn - truth) <= LIMIT).all(axis=2)).mean() <= case.allowed
+
+    assert holds(limits[arithmetic])
+    assert not holds(100 * limits[arithmetic])
 
 
 # ---- Lights and cameras that are cut off

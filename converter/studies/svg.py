@@ -11,7 +11,7 @@ _EMPTY = re.compile(
 
 
 def compact(svg: str) -> str:
-    """The same picture: styles as classes, coordinates to a tenth of a point, no names that nothing refers to."""
+    """The same picture: styles as classes, coordinates to a tenth of a point, no groups that say nothing."""
     classes: dict[str, str] = {}
 
     def style(match: re.Match[str]) -> str:
@@ -23,6 +23,21 @@ def compact(svg: str) -> str:
         return " ".join(_NUMBER.sub(lambda number: f"{float(number[0]):.1f}", text).split())
 
     head, separator, body = svg.partition("<defs>")
-    body = re.sub(r"\n\s*", "\n", _TAG.sub(tag, body))
+    body = re.sub(r"\s*\n\s*", "\n", _unwrapped(_TAG.sub(tag, body)))
     rules = "".join(f".{name}{{{rule}}}" for rule, name in classes.items())
     return f"{head}<style>{rules}</style>{separator}{body}"
+
+
+def _unwrapped(body: str) -> str:
+    """What is left without groups that say nothing."""
+    plain: list[bool] = []
+
+    def tag(match: re.Match[str]) -> str:
+        if match[0].endswith("/>"):
+            return ""
+        if match[0] == "</g>":
+            return "" if plain.pop() else "</g>"
+        plain.append(match[0] == "<g>")
+        return "" if plain[-1] else match[0]
+
+    return re.sub(r"</?g\b[^>]*>", tag, body)
