@@ -18,6 +18,8 @@ LONGEST = 20.0
 """Seconds after which a picture is given up, and its method for the harder values of the family."""
 LONGEST_TRUTH = 120.0
 """The same of a truth that is drawn."""
+PLAIN = 0.05
+"""Share of wrong pixels from which on anyone sees that something is wrong."""
 TRUTH = "native-long-double"
 """The method that draws the truths for which there is no closed form."""
 
@@ -42,7 +44,7 @@ class Outcome:
         difference: of its picture from the truth; None if there is no picture.
         failure: why there is none.
         allowed: share of the pixels that may differ.
-        pixels, truth: of the first picture that fails on either side, else None.
+        pixels, truth: of the first picture that fails plainly, and where none does of the first that fails, else None.
 
     """
 
@@ -169,9 +171,11 @@ def _draw(case: Case, method: Method, worker: Draws, variant: str | None) -> Pix
 
 
 def _slim(study: FamilyStudy, method: str) -> tuple[Outcome, ...]:
-    """A method's outcomes, of which only those that fail first keep their pictures."""
-    kept = study.first_failures(method)
+    """A method's outcomes, of which only the one that shows best how it fails keeps its picture."""
+    outcomes = study.outcomes[method]
+    start = easiest(study.family, [outcome.value for outcome in outcomes])
+    wrong = [i for i, o in enumerate(outcomes) if o.pixels is not None and not o.holds]
+    kept = min(wrong, key=lambda i: (outcomes[i].share < PLAIN, abs(i - start)), default=None)
     return tuple(
-        o if i in kept else Outcome(o.value, o.difference, o.failure, o.allowed)
-        for i, o in enumerate(study.outcomes[method])
+        o if i == kept else Outcome(o.value, o.difference, o.failure, o.allowed) for i, o in enumerate(outcomes)
     )

@@ -16,16 +16,15 @@ PAGE, CHART = "stability.md", "stability.svg"
 ENLARGED = 4
 """Dots to a pixel of the pictures."""
 SHOWN = (
-    ("size", "mitsuba-offset", "speckles of rays that start beyond what they should hit, and shadows that end early"),
-    ("position", "native-float", "edges and shadows torn, where coordinates have no digits left for the scene"),
-    ("huge", "mitsuba-offset", "a surface that shades itself: speckles all over the large ball"),
-    ("distance", "mitsuba-ulp", "a torn edge, from a discriminant in single precision"),
-    ("gap", "mitsuba-offset", "light in a closed gap: the offset has put shadow rays beyond the roof"),
-    ("low-light", "native-float", "a light whose height above the floor is rounded"),
-    ("nearly-coplanar", "mitsuba-mesh", "the lower of two floors, for both have become one"),
-    ("checker-boundary", "mitsuba-offset", "cells of the next layer, where hits have fallen below the floor"),
+    ("size", "mitsuba-offset", "shadows and reflections are gone where the offset of rays is as large as the balls"),
+    ("position", "native-float", "mirrors and glass show the sky, where coordinates have no digits left for the scene"),
+    ("huge", "mitsuba-offset", "the large ball shades itself, for its surface is rounded by more than the offset"),
+    ("distance", "mitsuba-ulp", "the ball shades itself in rings, for the hits of a far eye lie below its surface"),
+    ("gap", "mitsuba-offset", "light falls into a closed gap, for shadow rays start beyond its roof"),
+    ("nearly-coplanar", "mitsuba-mesh", "the lower of two floors is seen, for to Embree they are one"),
+    ("checker-boundary", "mitsuba-offset", "cells of the layer below appear, for hits have fallen beneath the floor"),
 )
-"""Failures that the page shows: where a method fails first in a family, and what is to be seen there."""
+"""Failures that the page shows: a family, a method, and what is to be seen there."""
 
 
 def write_page(studies: Sequence[FamilyStudy], folder: Path) -> None:
@@ -45,17 +44,15 @@ def write_page(studies: Sequence[FamilyStudy], folder: Path) -> None:
             file = f"stability-{family}.png"
             pair = side_by_side(outcome)
             write_image(folder / file, pair, pair.shape[1], pair.shape[0])
-            told = f"`{family}` at {number(outcome.value)}, {method}: {seen}"
-            shown.append(f"![{family}: the truth and {method}]({file})\n\n{told}.")
+            told = f"`{family}` at {number(outcome.value)}, {method}: {seen}."
+            shown.append(f"![{family}: the truth and {method}]({file})\n\n{told}")
     with replacing(folder / PAGE) as temporary:
         temporary.write_text(_page(studies, shown), encoding="utf-8")
 
 
 def _failing(study: FamilyStudy | None, method: str) -> Outcome | None:
-    """The first picture that a method gets wrong, from the easy values on."""
-    if study is None or method not in study.outcomes:
-        return None
-    outcomes = [study.outcomes[method][i] for i in study.first_failures(method)]
+    """The picture that shows how a method fails, if it does."""
+    outcomes = study.outcomes.get(method, ()) if study is not None else ()
     return next((outcome for outcome in outcomes if outcome.pixels is not None), None)
 
 
