@@ -103,7 +103,7 @@ class Whitted(mi.SamplingIntegrator):
             with open(str(mi.file_resolver().resolve(props["filename"])), encoding="utf-8") as file:  # noqa: PTH123
                 text = file.read()
         self._geometry = parse_geometry(text)
-        self._bsdfs = _materials(props, self.surfaces)
+        self._bsdfs = Bsdfs(_materials(props, self.surfaces))
         self.ambient = mi.Color3f(props.get("ambient", mi.ScalarColor3d(0.0)))
         self.background = mi.Color3f(props.get("background", mi.ScalarColor3d(0.0)))
         self.max_depth = mi.UInt32(props.get("max_depth", 16))
@@ -152,7 +152,7 @@ class Whitted(mi.SamplingIntegrator):
             else:
                 self._tracer = MitsubaSurfaces(scene, self.surfaces, records, self.intersections)
         # Read anew each time: these are what mitsuba.traverse lets a user change.
-        self._materials = Materials(self.types, [self._bsdfs[surface.material] for surface in self.surfaces])
+        self._materials = Materials(self.types, [self._bsdfs.by_name[surface.material] for surface in self.surfaces])
         self._lights = Lights(self.types, scene.emitters())
         self.light_count = self._lights.count
 
@@ -356,12 +356,22 @@ class Whitted(mi.SamplingIntegrator):
         callback.put("background", self.background, mi.ParamFlags.NonDifferentiable)
         callback.put("cutoff", self.cutoff, mi.ParamFlags.NonDifferentiable)
         callback.put("max_depth", self.max_depth, mi.ParamFlags.NonDifferentiable)
-        for name, bsdf in self._bsdfs.items():
+        for name, bsdf in self._bsdfs.by_name.items():
             callback.put(name, bsdf, mi.ParamFlags.Differentiable)
 
     def to_string(self):
         way = f"{self.intersections}, {self.precision}"
         return f"Whitted[{len(self.surfaces)} surfaces, {way}, max_depth={self.max_depth}]"
+
+
+class Bsdfs:
+    """The nested BSDFs, in an object of a class that Dr.Jit does not know.
+
+    In what it knows it looks for variables of loops, and takes the texels of a texture that two BSDFs share for some.
+    """
+
+    def __init__(self, by_name):
+        self.by_name = by_name
 
 
 def _materials(props, surfaces):
