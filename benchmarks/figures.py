@@ -30,7 +30,7 @@ from converter.scene.settings import Settings
 ROOT = Path(__file__).resolve().parent.parent
 FIGURE1 = ROOT / "scenes" / "figure1.in"
 PROGRAMS = Path(sys.executable).parent
-RUNS, FEW_RUNS = 11, 5
+RUNS, FEW_RUNS = 11, 3
 
 
 def main() -> None:

@@ -124,3 +124,26 @@ def test_pictures_of_all_sizes_share_one_kernel(mi, small_scene, intersections):
             renderer.render(small_scene, replace(SETTINGS, width=width))
             kernels |= {entry["hash"] for entry in dr.kernel_history() if entry.get("operation_count", 0) > 500}
     assert len(kernels) == 1
+
+
+@pytest.mark.parametrize("intersections", ["analytic", "bvh", "mesh", "offset"])
+def test_scenes_are_freed(mi, small_scene, intersections):
+    """A scene holds its integrator, and would never be freed if that held the scene."""
+    import gc
+
+    import drjit as dr
+
+    from converter.to_mitsuba.load import load_description
+    from converter.to_mitsuba.scene import scene_description
+
+    def highest_shape() -> int:
+        scene = load_description(scene_description(small_scene, Settings(width=8, height=6), intersections))
+        mi.render(scene)
+        return int(dr.reinterpret_array(mi.UInt32, scene.shapes_dr()).numpy().max())
+
+    highest_shape()
+    gc.collect()
+    first = highest_shape()
+    for _ in range(3):
+        gc.collect()
+        assert highest_shape() <= first

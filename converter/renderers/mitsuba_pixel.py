@@ -26,11 +26,11 @@ def trace_pixels(scene: Any, settings: Settings, pixels: Sequence[tuple[int, int
     import mitsuba as mi
 
     integrator, sensor = scene.integrator(), scene.sensors()[0]
-    integrator.prepare(scene)
     offsets = integrator.sample_offsets(settings.samples)
     x, y = (np.array([pixel[k] + offset[k] for pixel in pixels for offset in offsets], float) for k in (0, 1))
-    rays = _Rays.of(integrator.primary_ray(sensor, mi.Point2d(x, y)))
-    roots = _Tracer(integrator).trees(rays)
+    with integrator.prepared(scene):
+        rays = _Rays.of(integrator.primary_ray(sensor, mi.Point2d(x, y)))
+        roots = _Tracer(integrator).trees(rays)
     result = []
     for i, (column, row) in enumerate(pixels):
         samples = roots[i * len(offsets) : (i + 1) * len(offsets)]

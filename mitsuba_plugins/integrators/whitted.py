@@ -2,6 +2,7 @@
 
 import math
 import time
+from contextlib import contextmanager
 from typing import Any
 
 import drjit as dr
@@ -127,7 +128,7 @@ class Whitted(mi.SamplingIntegrator):
         self.shadows = props.get("shadows", True)
         self.highlights = props.get("highlights", True)
         self.stack_size = max(1, props.get("max_depth", 16))
-        self._scene = None
+        self._tracer: Any = None
 
     @property
     def surfaces(self):
@@ -136,25 +137,30 @@ class Whitted(mi.SamplingIntegrator):
 
     # ------------------------------------------------------------------ preparation
 
-    def prepare(self, scene):
-        """Lay out what the kernel reads: surfaces, finishes, pigments, lights. `render` and `sample` call it."""
-        if self._scene is not scene:
-            self._scene = scene
-            records = Records(self.types, self.surfaces)
-            self.first_records = records.first
-            self._tracer: Any
-            if self.intersections == "analytic":
-                self._tracer = AnalyticSurfaces(self.types, self.surfaces, records)
-            elif self.intersections == "bvh":
-                self._tracer = BvhSurfaces(self.types, self.surfaces, records)
-            elif self.intersections == "mesh":
-                self._tracer = MeshSurfaces(self.types, scene, self.surfaces, records)
-            else:
-                self._tracer = MitsubaSurfaces(scene, self.surfaces, records, self.intersections)
-        # Read anew each time: these are what mitsuba.traverse lets a user change.
+    @contextmanager
+    def prepared(self, scene):
+        """Lay out what the kernel reads: surfaces, finishes, pigments, lights; the methods below need it.
+
+        Let go of at the end: it may hold the scene, which holds this integrator, and such circles are never freed.
+        """
+        records = Records(self.types, self.surfaces)
+        self.first_records = records.first
+        if self.intersections == "analytic":
+            self._tracer = AnalyticSurfaces(self.types, self.surfaces, records)
+        elif self.intersections == "bvh":
+            self._tracer = BvhSurfaces(self.types, self.surfaces, records)
+        elif self.intersections == "mesh":
+            self._tracer = MeshSurfaces(self.types, scene, self.surfaces, records)
+        else:
+            self._tracer = MitsubaSurfaces(scene, self.surfaces, records, self.intersections)
+        # Read anew each time, too: these are what mitsuba.traverse lets a user change.
         self._materials = Materials(self.types, [self._bsdfs.by_name[surface.material] for surface in self.surfaces])
         self._lights = Lights(self.types, scene.emitters())
         self.light_count = self._lights.count
+        try:
+            yield
+        finally:
+            self._tracer = None
 
     # ------------------------------------------------------------------ one ray
 
@@ -271,8 +277,8 @@ class Whitted(mi.SamplingIntegrator):
 
     def sample(self, scene, sampler, ray, medium=None, active=True):
         """Radiance along single-precision rays, of any sensor."""
-        self.prepare(scene)
-        color = self.trace(start_ray(self.types, ray.o, unit(mi.Vector3d(ray.d))), active)
+        with self.prepared(scene):
+            color = self.trace(start_ray(self.types, ray.o, unit(mi.Vector3d(ray.d))), active)
         return color, mi.Bool(active), []
 
     def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
@@ -300,7 +306,10 @@ class Whitted(mi.SamplingIntegrator):
 
         """
         offsets = self.sample_offsets(spp or sensor.sampler().sample_count())
-        self.prepare(scene)
+        with self.prepared(scene):
+            yield from self._bands(sensor, offsets)
+
+    def _bands(self, sensor, offsets):
         width, height = sensor.film().crop_size()
         crop_offset = mi.Point2d(sensor.film().crop_offset())
         rays, least = FIRST_BAND, SMALLEST_BAND
