@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <algorithm>
 #include <cmath>
 #include <numbers>
 
@@ -18,6 +19,14 @@ Vector<Real> vector_of(const Triple& v) {
 // In double, before any of the two is rounded.
 inline Triple difference(const Triple& a, const Triple& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
 
+// The same direction at a length whose square neither overflows nor vanishes, in float too; a power of two times `v`,
+// so that no digit is lost.
+inline Triple in_range(const Triple& v) {
+    const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+    const int exponent = std::ilogb(largest);
+    return {std::scalbn(v[0], -exponent), std::scalbn(v[1], -exponent), std::scalbn(v[2], -exponent)};
+}
+
 //     forward = normalize(look_at - eye), right = normalize(forward x up), up' = right x forward
 //
 // The file's `up` is a vector that only has to lie on the right side; up' is orthogonal to the view direction.
@@ -26,8 +35,8 @@ class Camera {
  public:
     Camera(const CameraDescription& camera, int width, int height)
         : eye_(vector_of<Real>(camera.eye)),
-          forward_(normalize(vector_of<Real>(difference(camera.look_at, camera.eye)))),
-          right_(normalize(cross(forward_, vector_of<Real>(camera.up)))),
+          forward_(normalize(vector_of<Real>(in_range(difference(camera.look_at, camera.eye))))),
+          right_(normalize(cross(forward_, vector_of<Real>(in_range(camera.up))))),
           up_(cross(right_, forward_)),
           width_(static_cast<Real>(width)),
           height_(static_cast<Real>(height)),

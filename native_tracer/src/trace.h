@@ -228,7 +228,8 @@ auto Tracer<Real, Observer>::highlight(const Rays<Real>& rays, const Hits<Real>&
                           : dot(L(2) * cosine * surface.normal - to_light, to_viewer);
     L result = Real(0);
     for_each_distinct(hits.patch, wanted, [&](int, int lane, Mask<Real> same) {
-        result = select(same, power(max(base, L(Real(0))), surface.alpha[lane]), result);
+        // A cosine that is rounded above 1 has powers without bounds.
+        result = select(same, power(min(max(base, L(Real(0))), L(Real(1))), surface.alpha[lane]), result);
     });
     return result;
 }
