@@ -2,16 +2,19 @@
 
 import argparse
 import time
+from functools import partial
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from converter.commands.exits import DISAGREE, OK, UsageError
 from converter.commands.method_options import Chosen, add_method_options, check_variant, choose
 from converter.commands.options import Parser, add_reading_options, add_running_options, not_negative, pixels, whole
 
 if TYPE_CHECKING:
+    from converter.compare.classes import Explanation
     from converter.compare.metrics import Pixels
     from converter.compare.report import Pictures, Report
+    from converter.scene.model import Scene
 
 
 def parser() -> Parser:
@@ -46,6 +49,13 @@ def parser() -> Parser:
     group.add_argument(
         "--amplify", type=not_negative, default=10.0, metavar="F", help="factor of that difference (%(default)g)"
     )
+    group.add_argument(
+        "--explain",
+        type=traced,
+        default=256,
+        metavar="N",
+        help="look for the reason in the rays behind so many of the disagreeing pixels (%(default)s)",
+    )
     group.add_argument("--json", metavar="FILE", help="write every figure; - is the standard output, without the table")
     group.add_argument("-q", "--quiet", action="store_true", help="no notes, no progress bar")
     add_reading_options(result)
@@ -59,6 +69,11 @@ def repeats(text: str) -> int:
     return whole(text, 0, 1000)
 
 
+def traced(text: str) -> int:
+    """How many pixels to look into."""
+    return whole(text, 0, 10000)
+
+
 def run(arguments: argparse.Namespace) -> int:
     """Compare, and tell."""
     from converter.commands.json_out import check_json, write_json
@@ -69,11 +84,15 @@ def run(arguments: argparse.Namespace) -> int:
 
         check_writable(arguments.png)
     two_images = len(arguments.more) == 1 and is_image(arguments.scene)
-    pictures = _read_both(arguments) if two_images else _draw_both(arguments)
-
     from converter.compare.report import make_report, to_json
 
-    report = make_report(pictures, arguments.limit)
+    if two_images:
+        report = make_report(_read_both(arguments), arguments.limit)
+    else:
+        scene, methods, pictures = _draw_both(arguments)
+        report = make_report(pictures, arguments.limit)
+        if report.difference.disagreeing and arguments.explain:
+            report.explanation = _explained(scene, methods, report, arguments)
     if arguments.png is not None:
         from converter.compare.figure import draw_figure
 
@@ -114,7 +133,7 @@ def _read_both(arguments: argparse.Namespace) -> "Pictures":
     return Pictures(first, second, reference, test)
 
 
-def _draw_both(arguments: argparse.Namespace) -> "Pictures":
+def _draw_both(arguments: argparse.Namespace) -> "tuple[Scene, tuple[Chosen, Chosen], Pictures]":
     """The scene by both methods, in turns where they draw more than once, so that a busy machine slows both."""
     methods = _methods(arguments)
 
@@ -139,7 +158,23 @@ def _draw_both(arguments: argparse.Namespace) -> "Pictures":
             else:
                 timings[name].warm.append(spent)
     reference, test = timings
-    return Pictures(reference, test, drawn[reference], drawn[test], timings)
+    return scene, methods, Pictures(reference, test, drawn[reference], drawn[test], timings)
+
+
+def _explained(
+    scene: "Scene", methods: tuple[Chosen, Chosen], report: "Report", arguments: argparse.Namespace
+) -> "Explanation | None":
+    """Why pixels disagree; None where a renderer does not tell its rays."""
+    from converter.compare.classes import explain, less_exact
+
+    arithmetic = less_exact(arguments.reference, arguments.method)
+    if arithmetic is None:
+        return None
+    pictures = report.pictures.reference_pixels, report.pictures.test_pixels
+    settings = methods[0].settings, methods[1].settings
+    renderers: list[Any] = [method.renderer for method in methods]
+    one, other = (partial(r.trace_pixels, scene, s) for r, s in zip(renderers, settings, strict=True))
+    return explain(scene, pictures, settings, (one, other), arithmetic, arguments.explain)
 
 
 def _methods(arguments: argparse.Namespace) -> tuple[Chosen, Chosen]:
@@ -160,11 +195,16 @@ def _methods(arguments: argparse.Namespace) -> tuple[Chosen, Chosen]:
 
 def _print(report: "Report") -> None:
     from converter.commands.tables import print_table
-    from converter.compare.report import difference_rows, timing_rows, verdict
+    from converter.compare.report import class_rows, difference_rows, timing_rows, verdict
 
     found = report.difference
     title = f"{report.pictures.test} against {report.pictures.reference}, {found.width} x {found.height} pixels"
     print_table(difference_rows(report), title=title)
+    if report.explanation is not None:
+        traced = len(report.explanation.pixels)
+        sampled = f", by {traced} of them" if traced < found.disagreeing else ""
+        print()
+        print_table(class_rows(report.explanation), title=f"what the pixels that disagree are near to{sampled}")
     if report.pictures.timings:
         print()
         header, rows = timing_rows(report.pictures.timings)

@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
+from converter.compare.classes import Explanation
 from converter.compare.flip import flip_map
 from converter.compare.metrics import Difference, Pixels, clamped, compare_pixels
 from converter.scene.model import Color
@@ -49,6 +50,7 @@ class Report:
         clamped: between them as image files show them, clamped to 0..1.
         flip: FLIP error of each pixel.
         limit_percent: share of disagreeing pixels up to which they agree.
+        explanation: why pixels disagree, where it was looked for.
 
     """
 
@@ -57,6 +59,7 @@ class Report:
     clamped: Difference
     flip: NDArray[np.float32]
     limit_percent: float
+    explanation: Explanation | None = None
 
     @property
     def agrees(self) -> bool:
@@ -109,6 +112,11 @@ def difference_rows(report: Report) -> list[tuple[str, str]]:
     return rows
 
 
+def class_rows(explanation: Explanation) -> list[tuple[str, str]]:
+    """Why pixels disagree, for a table."""
+    return [(kind, str(count)) for kind, count in explanation.counts().items()]
+
+
 def timing_rows(timings: Mapping[str, Timing]) -> tuple[list[str], list[list[str]]]:
     """Header and rows of a table of seconds."""
     repeats = max(len(timing.warm) for timing in timings.values())
@@ -132,6 +140,7 @@ def to_json(report: Report) -> dict[str, Any]:
         "limit_percent": report.limit_percent,
         "agrees": report.agrees,
         "clamped": _difference_json(report.clamped),
+        "classes": _classes_json(report.explanation),
         "seconds": {
             name: {"cold": t.cold, "warm_median": t.warm_median, "warm": t.warm, "stages": dict(t.stages)}
             for name, t in report.pictures.timings.items()
@@ -141,6 +150,13 @@ def to_json(report: Report) -> dict[str, Any]:
 
 def _difference_json(found: Difference) -> dict[str, Any]:
     return {**asdict(found), "pixels": found.pixels, "disagreeing_percent": found.disagreeing_percent}
+
+
+def _classes_json(explanation: Explanation | None) -> dict[str, Any] | None:
+    if explanation is None:
+        return None
+    pixels = [asdict(pixel) for pixel in explanation.pixels]
+    return {"traced": len(pixels), "counts": explanation.counts(), "pixels": pixels}
 
 
 def _largest_rows(name: str, report: Report, found: Difference) -> list[tuple[str, str]]:

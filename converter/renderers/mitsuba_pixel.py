@@ -29,7 +29,7 @@ def trace_pixels(scene: Any, settings: Settings, pixels: Sequence[tuple[int, int
     offsets = integrator.sample_offsets(settings.samples)
     x, y = (np.array([pixel[k] + offset[k] for pixel in pixels for offset in offsets], float) for k in (0, 1))
     with integrator.prepared(scene):
-        rays = _Rays.of(integrator.primary_ray(sensor, mi.Point2d(x, y)))
+        rays = _Rays.of(integrator.primary_ray(sensor, mi.Point2d(x, y)), len(x))
         roots = _Tracer(integrator).trees(rays)
     result = []
     for i, (column, row) in enumerate(pixels):
@@ -46,10 +46,9 @@ class _Rays:
     columns: tuple[NDArray[Any], ...]  # o, d, object, record, inside, t_min
 
     @classmethod
-    def of(cls, ray: Ray) -> "_Rays":
-        width = len(np.asarray(ray.t_min))
+    def of(cls, ray: Ray, count: int) -> "_Rays":
         columns = (ray.o, ray.d, ray.object, ray.record, ray.inside, ray.t_min)
-        return cls(tuple(np.broadcast_to(a, (*a.shape[:-1], width)) for a in map(np.array, columns)))
+        return cls(tuple(np.broadcast_to(a, (*a.shape[:-1], count)) for a in map(np.array, columns)))
 
     def chosen(self, which: Sequence[int]) -> "_Rays":
         return _Rays(tuple(column[..., which] for column in self.columns))
@@ -162,7 +161,7 @@ class _Tracer:
                     record["children"].append(child)
                     record["coefficients"].append(coefficient)
                     followed[kind].append((i, child))
-        successors = [_Rays.of(mirrored), _Rays.of(through)]
+        successors = [_Rays.of(mirrored, count), _Rays.of(through, count)]
         chosen = [s.chosen([i for i, _ in which]) for s, which in zip(successors, followed.values(), strict=True)]
         return [child for which in followed.values() for _, child in which], chosen[0].with_more(chosen[1])
 

@@ -1,0 +1,419 @@
+"""Why pixels disagree: the ray trees behind each, and the edge that the first differing ray came too near.
+
+Two methods disagree where a number that one of them rounds lies so near to a boundary that they decide differently:
+which of two objects is met, which tile, whether a light is seen. Such a pixel is explained when the ray's margin to
+that boundary, a length, is no larger than the error that the method's arithmetic excuses: what is rounded where the ray
+is, and what it inherits. It inherits no more than what the two trees' rays differ by, and no more than one bounce can
+have made of the error before. At a distance t, an error e_d of the direction has moved the hit by t e_d, and a surface
+met at a slant spreads that over 1 / cosine; on a ball of radius r, an error e_p of the position turns the normal by
+e_n = e_p / r, and with it the mirrored ray by twice as much, a refracted one, which leaves at another cosine, by
+e_n + eta (e_d + e_n) / cosine. A boundary that a ray is near enough to with what it inherits only is a deep reflection.
+
+These are first-order bounds, Igehy's ray differentials (Tracing Ray Differentials, SIGGRAPH 1999) but for the signs;
+where a cosine is nearly 0, the square root of an error takes the place of its quotient.
+"""
+
+import math
+from collections import Counter
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+
+import numpy as np
+
+from converter.compare.margins import (
+    crossings,
+    edge_margin,
+    silhouette_margin,
+    surface_margin,
+    tie_margin,
+    tile_margin,
+)
+from converter.compare.metrics import LIMIT, Pixels, absolute_difference
+from converter.compare.rays import Pair, Ray, pair_trees
+from converter.scene.model import Scene, Shape, Sphere
+from converter.scene.needs import scene_needs
+from converter.scene.settings import Settings
+from converter.scene.warnings import arithmetic_of
+
+if TYPE_CHECKING:
+    from converter.renderers.methods import Method
+
+Class = Literal[
+    "silhouette",
+    "checker or texel edge",
+    "shadow edge",
+    "critical angle",
+    "deep reflection",
+    "ray not followed",
+    "unexplained",
+]
+CLASSES: tuple[Class, ...] = (
+    "silhouette",
+    "checker or texel edge",
+    "shadow edge",
+    "critical angle",
+    "deep reflection",
+    "ray not followed",
+    "unexplained",
+)
+"""What a boundary is of. A silhouette is any place where a ray comes to meet another object or another face; a ray is
+not followed by a method that has another cut-off or depth, or where its weight is the cut-off itself."""
+
+TERMS = ("diffuse", "specular")
+MOST_TRACED = 256
+"""Pixels that are traced at most; of more, as many evenly among them."""
+BATCH = 32
+"""Pixels that are traced together: those of which one has too many rays are left out."""
+ROUNDINGS = 8
+"""Units by which a number is off that a few operations lead to."""
+TWICE = 2
+"""A ray may inherit so many times what it differs by in the two trees, since either may have crossed the boundary."""
+
+
+class Arithmetic(NamedTuple):
+    """What of a method's arithmetic decides about its errors, as shares of the largest number involved.
+
+    `unit` is that of its roundings. Nothing is met nearer than `hidden` to where a ray starts, and `moved` is how far
+    off the surface it starts.
+    """
+
+    unit: float
+    hidden: float
+    moved: float
+
+
+ARITHMETICS = {
+    "double": Arithmetic(2.0**-52, 2.0**-47, 0.0),
+    "float": Arithmetic(2.0**-23, 2.0**-18, 0.0),
+    "mesh": Arithmetic(2.0**-23, 2.0**-20, 2.0**-20),
+    "ulp": Arithmetic(2.0**-23, 2.0**-16, 2.0**-16),
+    "offset": Arithmetic(2.0**-23, 2.0**-10, 2.0**-13),
+}
+"""By the names that `warnings.arithmetic_of` gives them."""
+
+
+Trace = Callable[[Sequence[tuple[int, int]]], list[dict[str, Any]]]
+"""Traces pixels, as `NativeRenderer.trace_pixels` documents it."""
+
+
+@dataclass(frozen=True, slots=True)
+class Explained:
+    """A disagreeing pixel.
+
+    Attributes:
+        x, y: where it is.
+        kind: its class.
+        ray: the kind of the first ray that differs, and `depth` its bounces; None where no ray does.
+        what: what is different.
+        margin: the length that the ray is from the boundary.
+        error: the length that it may be off.
+
+    """
+
+    x: int
+    y: int
+    kind: Class
+    ray: str | None
+    depth: int
+    what: str
+    margin: float
+    error: float
+
+
+@dataclass(frozen=True, slots=True)
+class Explanation:
+    """Why pixels disagree: of `disagreeing` in all those in `pixels`, which were traced."""
+
+    disagreeing: int
+    pixels: tuple[Explained, ...]
+
+    def counts(self) -> dict[Class, int]:
+        """Traced pixels by class, those without any left out."""
+        found = Counter(pixel.kind for pixel in self.pixels)
+        return {kind: found[kind] for kind in CLASSES if found[kind]}
+
+
+def less_exact(one: "Method", other: "Method") -> str | None:
+    """Whose arithmetic to measure by, a key of `ARITHMETICS`; None where one of them does not tell its rays."""
+    found = [arithmetic_of(method) for method in (one, other)]
+    known = [kind for kind in found if kind is not None]
+    return max(known, key=lambda kind: ARITHMETICS[kind].hidden) if len(known) == len(found) else None
+
+
+def explain(
+    scene: Scene,
+    pictures: tuple[Pixels, Pixels],
+    settings: tuple[Settings, Settings],
+    traces: tuple[Trace, Trace],
+    arithmetic: str,
+    most: int = MOST_TRACED,
+) -> Explanation:
+    """Classify the pixels in which two pictures of a scene disagree.
+
+    Args:
+        scene: what they show.
+        pictures: that of the reference, and the other.
+        settings: what they were drawn with.
+        traces: what traces their pixels.
+        arithmetic: the less exact of the two, a key of `ARITHMETICS`.
+        most: how many pixels to trace.
+
+    """
+    disagrees = ~(absolute_difference(*pictures) <= LIMIT).all(axis=2)
+    rows, columns = np.nonzero(disagrees)
+    chosen = np.linspace(0, len(rows) - 1, min(most, len(rows))).round().astype(int)
+    pixels = [(int(columns[i]), int(rows[i])) for i in chosen]
+    found: list[Explained] = []
+    if pixels:
+        explainer = _Explainer(scene, settings, arithmetic)
+    for first in range(0, len(pixels), BATCH):
+        batch = pixels[first : first + BATCH]
+        try:
+            trees = [trace(batch) for trace in traces]
+        except ValueError:  # more rays than a listing can hold
+            continue
+        found += (
+            explainer.pixel(x, y, pair_trees(one["rays"], other["rays"]))
+            for (x, y), one, other in zip(batch, *trees, strict=True)
+        )
+    return Explanation(len(rows), tuple(found))
+
+
+class _Error(NamedTuple):
+    """How far a ray may be off: its origin, a length, and its direction, an angle."""
+
+    origin: float
+    direction: float
+
+
+class _Margin(NamedTuple):
+    """How far a ray is from a boundary, what of its error it inherits, and what its own roundings add."""
+
+    margin: float
+    inherited: float
+    own: float
+
+    @property
+    def error(self) -> float:
+        return self.inherited + self.own
+
+
+class _Cause(NamedTuple):
+    """A difference between two trees: the boundary, what differs, in which ray, and how much it makes in its pixel."""
+
+    kind: Class
+    what: str
+    ray: Ray
+    amount: float
+    near: _Margin
+
+    def verdict(self) -> Class:
+        """Its class, if the ray came near enough, and by itself."""
+        if not self.near.margin <= self.near.error:
+            return "unexplained"
+        return self.kind if self.near.margin <= self.near.own else "deep reflection"
+
+
+class _Explainer:
+    """Walks through the two trees of a pixel with the error of each ray."""
+
+    def __init__(self, scene: Scene, settings: tuple[Settings, Settings], arithmetic: str) -> None:
+        self._scene = scene
+        needs = [scene_needs(scene, each) for each in settings]
+        self._etas = needs[0].etas
+        self._cutoff = settings[0].cutoff
+        self._same_limits = len({(n.max_depth, each.cutoff) for n, each in zip(needs, settings, strict=True)}) == 1
+        self._unit, self._hidden, self._moved = ARITHMETICS[arithmetic]
+        self._rounding = ROUNDINGS * self._unit
+        self._extents = [_extent(o.shape) for o in scene.objects]
+        self._deviations: list[float] = [0.0] * len(scene.objects)
+        if self._moved:
+            from converter.to_mitsuba.surfaces import shapes
+
+            for i, shape in enumerate(shapes(scene, settings[1])[0].values()):
+                if shape["type"] == "mesh":
+                    # Also of what is cut off far away: Embree's numbers are as large as a triangle's.
+                    mesh = shape["mesh"]
+                    self._deviations[i] = mesh.deviation + self._unit / 2 * float(np.abs(mesh.vertices).max())
+
+    def pixel(self, x: int, y: int, pairs: Sequence[Pair]) -> Explained:
+        """The class of a pixel: that of the difference that changes it most, or of one that nothing explains."""
+        start = _Error(0.0, self._rounding)
+        causes = [cause for pair in pairs for cause in self._causes(pair, start, None)]
+        if not causes:
+            return Explained(x, y, "unexplained", None, 0, "the rays are the same", math.inf, 0.0)
+        most = max(causes, key=lambda cause: (cause.verdict() == "unexplained" and cause.amount > LIMIT, cause.amount))
+        ray, near = most.ray, most.near
+        return Explained(x, y, most.verdict(), ray["kind"], ray["depth"], most.what, near.margin, near.error)
+
+    # ---- One ray in both trees
+
+    def _causes(self, pair: Pair, error: _Error, start: Ray | None) -> Iterator[_Cause]:
+        """What differs, first in a ray that starts at the hit `start`, then in what follows from it."""
+        ray, other = pair.reference, pair.test
+        if ray is None or other is None:
+            one = pair.either
+            amount = one["weight"] * max(map(abs, one["radiance"]))
+            short = abs(one["weight"] - self._cutoff) if self._same_limits else 0.0
+            yield _Cause("ray not followed", "a ray is traced", one, amount, _Margin(short, 0.0, self._rounding))
+            return
+        hits = [hit for hit in (ray["hit"], other["hit"]) if hit is not None]
+        if not hits:
+            return
+        error = _Error(
+            min(error.origin, TWICE * math.dist(ray["origin"], other["origin"])),
+            min(error.direction, TWICE * math.dist(ray["direction"], other["direction"])),
+        )
+        reach = inherited = error.origin + max(hit["t"] for hit in hits) * error.direction
+        own = self._own(ray["origin"], hits, start)
+        if len(hits) == 1 or any(hits[0][key] != hits[1][key] for key in ("object", "plane", "entering")):
+            near = min(self._hit_margins(ray, hits, start, inherited, own), key=_share)
+            yield _Cause("silhouette", "object hit", ray, ray["weight"] * _largest(ray, other, "radiance"), near)
+            return
+        hit = hits[0]
+        spread = self._spread(ray, hit)
+        own = spread(own)
+        inherited = min(spread(inherited), TWICE * math.dist(hit["point"], hits[1]["point"]))
+        if _largest(hit, hits[1], "pigment") > 2**-20:
+            pigment = self._scene.pigments[self._scene.objects[hit["object"]].pigment]
+            near = _Margin(tile_margin(pigment, np.array(hit["point"])), inherited, own)
+            yield _Cause("checker or texel edge", "pigment", ray, ray["weight"] * _largest(ray, other, "local"), near)
+        yield from self._light_causes(ray, hits, inherited, own)
+        if all(_lit(one) == _lit(two) for one, two in zip(hit["lights"], hits[1]["lights"], strict=True)):
+            # Nothing but a highlight, or light that falls off, at another place.
+            lights = zip(hit["lights"], hits[1]["lights"], strict=True)
+            amount = sum(_largest(one, two, term) for one, two in lights for term in TERMS)
+            if ray["weight"] * amount > LIMIT / 4:
+                near = _Margin(math.dist(hit["point"], hits[1]["point"]), spread(reach), own)
+                yield _Cause("deep reflection", "light", ray, ray["weight"] * amount, near)
+        if hit["total_reflection"] != hits[1]["total_reflection"]:
+            near = self._critical_margin(ray, hit, error.direction, inherited, own)
+            amount = ray["weight"] * _largest(ray, other, "radiance")
+            yield _Cause("critical angle", "total reflection", ray, amount, near)
+            return
+        for child in pair.children:
+            following = self._bounced(ray, hit, child.either, error.direction + self._rounding, inherited + own)
+            yield from self._causes(child, following, hit)
+
+    def _own(self, origin: Sequence[float], hits: Sequence[Ray], start: Ray | None) -> float:
+        """How far the line of a ray is off the surfaces that it meets, by roundings there and by where it starts."""
+        scale = max(max(map(abs, origin)) + hit["t"] for hit in hits)
+        scale = max([scale, *(self._extents[hit["object"]] for hit in hits)])
+        off: float = self._rounding * scale + max(self._deviations[hit["object"]] for hit in hits)
+        return off if start is None else off + self._moved * _reach(start) + 2 * self._deviations[start["object"]]
+
+    def _shape(self, index: int) -> Shape:
+        return self._scene.objects[index].shape
+
+    def _hit_margins(
+        self, ray: Ray, hits: Sequence[Ray], start: Ray | None, inherited: float, own: float
+    ) -> Iterator[_Margin]:
+        o, d = np.array(ray["origin"]), np.array(ray["direction"])
+        hidden = self._hidden * _reach(start) if start is not None else 0.0
+        for index in {hit["object"] for hit in hits}:
+            shape = self._shape(index)
+            yield _Margin(min(silhouette_margin(shape, o, d), edge_margin(shape, o, d)), inherited, own)
+            yield _Margin(
+                surface_margin(shape, o, start is not None and index == start["object"]), inherited, own + hidden
+            )
+        if len(hits) == 2 and hits[0]["object"] != hits[1]["object"]:
+            a, b = (
+                min(crossings(self._shape(hit["object"]), o, d), key=lambda c, t=hit["t"]: abs(c.t - t))  # type: ignore[misc]
+                for hit in hits
+            )
+            yield _Margin(tie_margin(a, b), inherited, own)
+
+    # ---- At a surface that both trees meet
+
+    def _light_causes(self, ray: Ray, hits: Sequence[Ray], inherited: float, own: float) -> Iterator[_Cause]:
+        p = np.array(hits[0]["point"])
+        index = hits[0]["object"]
+        for one, other in zip(hits[0]["lights"], hits[1]["lights"], strict=True):
+            if _lit(one) == _lit(other):
+                continue
+            to_light = np.array(self._scene.lights[one["light"]].position) - p
+            distance = float(np.linalg.norm(to_light))
+            direction = to_light / distance
+            # How far the light is above the horizon of the surface, which turns with the point.
+            turn = 1 + self._curvature(index) * distance
+            rounded = self._rounding * distance
+            margins = [_Margin(abs(one["cosine"]) * distance, turn * inherited, turn * own + rounded)]
+            for blocker in {light["shadowed_by"] for light in (one, other)} - {None}:
+                shape = self._shape(blocker)
+                reach = _reach(hits[0])
+                less = own + self._rounding * max(self._extents[blocker], distance) + self._deviations[blocker]
+                less += self._moved * reach + 2 * self._deviations[index]
+                margins.append(_Margin(silhouette_margin(shape, p, direction), inherited, less))
+                near = surface_margin(shape, p, blocker == index)
+                margins.append(_Margin(near, inherited, less + self._hidden * reach))
+                margins += [
+                    _Margin(abs((c.t - distance) * c.cosine), inherited, less + self._hidden * reach)
+                    for c in crossings(shape, p, direction)
+                ]
+            amount = sum(_largest(one, other, term) for term in TERMS)
+            yield _Cause("shadow edge", "light seen", ray, ray["weight"] * amount, min(margins, key=_share))
+
+    def _critical_margin(self, ray: Ray, hit: Ray, direction: float, inherited: float, own: float) -> _Margin:
+        """Of the squared cosine behind the surface, whose sign decides."""
+        cosine, eta = self._refraction(ray, hit)
+        turn, steep = self._curvature(hit["object"]), 2 * eta * eta * cosine
+        margin = abs(1 - eta * eta * (1 - cosine * cosine))
+        return _Margin(margin, steep * (direction + turn * inherited), steep * turn * own + self._rounding * eta * eta)
+
+    def _spread(self, ray: Ray, hit: Ray) -> Callable[[float], float]:
+        """What an error of the ray's line makes of the position of its hit."""
+        cosine = max(abs(float(np.dot(ray["direction"], hit["normal"]))), 1e-12)
+        shape = self._shape(hit["object"])
+        if isinstance(shape, Sphere):
+            return lambda off: min(off / cosine, off + math.sqrt(2 * shape.radius * off))
+        return lambda off: off / cosine
+
+    def _curvature(self, index: int) -> float:
+        """By what angle the normal turns in a unit of length."""
+        shape = self._shape(index)
+        return 1 / shape.radius if isinstance(shape, Sphere) else 0.0
+
+    def _refraction(self, ray: Ray, hit: Ray) -> tuple[float, float]:
+        """The cosine before a surface, and the index on the ray's side over that behind."""
+        eta = self._etas[self._scene.objects[hit["object"]].finish]
+        cosine = abs(float(np.dot(ray["direction"], hit["normal"])))
+        return cosine, eta if hit["entering"] else 1 / eta
+
+    def _bounced(self, ray: Ray, hit: Ray, child: Ray, direction: float, off: float) -> _Error:
+        """The error of a ray that leaves a surface where its origin is off by `off`, one of `direction` coming in."""
+        turned = self._curvature(hit["object"]) * off + self._rounding
+        off += self._moved * _reach(hit)
+        if child["kind"] == "reflected" or hit["total_reflection"]:
+            return _Error(off, direction + 2 * turned + self._rounding)
+        _, eta = self._refraction(ray, hit)
+        behind = max(abs(float(np.dot(child["direction"], hit["normal"]))), 1e-12)
+        bent = eta * (direction + turned)
+        return _Error(off, min(bent / behind, math.sqrt(2 * bent)) + turned + self._rounding)
+
+
+def _reach(hit: Ray) -> float:
+    """The numbers that a hit's position was made of."""
+    return float(max(map(abs, hit["point"])) + hit["t"])
+
+
+def _share(margin: _Margin) -> float:
+    """A margin in errors."""
+    return margin.margin / margin.error if margin.error > 0 else math.inf
+
+
+def _lit(light: Ray) -> bool:
+    return light["cosine"] > 0 and light["shadowed_by"] is None
+
+
+def _largest(one: Ray, other: Ray, color: str) -> float:
+    """Largest difference of a colour; infinite where it is no number."""
+    difference = max(abs(a - b) for a, b in zip(one[color], other[color], strict=True))
+    return difference if difference == difference else math.inf
+
+
+def _extent(shape: Shape) -> float:
+    """The largest number that a shape is made of."""
+    if isinstance(shape, Sphere):
+        return max(map(abs, shape.center)) + shape.radius
+    return max(abs(plane[3]) / math.hypot(*plane[:3]) for plane in shape.planes)
