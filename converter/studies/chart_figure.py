@@ -24,7 +24,7 @@ if TYPE_CHECKING:
 ENDINGS = (".svg", ".png")
 COLUMN, ERROR_ROW, LINE = 7.4, 3.9, 0.145
 """Inches: a panel's width, its height, and the height of a method's line in the lowest one."""
-DOTS = 140
+DOTS = 105
 """A PNG's dots an inch."""
 NAME = 6.5
 """Size of a method's name, in points."""
