@@ -73,7 +73,7 @@ def _page(studies: Sequence[FamilyStudy], shown: Sequence[str]) -> str:
     rows = "\n".join("| " + " | ".join(row) + " |" for row in table)
     families = "\n".join(f"| {s.family.name} | {s.family.stress} | {s.family.about} |" for s in studies)
     missing = "\n".join(f"- {line}" for line in failures(studies))
-    legend = " ".join(LEGEND.splitlines())
+    legend = ". ".join(LEGEND.splitlines())
     return f"""# Where each method fails
 
 Made by `make stability`: every method of the table draws every family's scenes, each of which pushes one number toward
