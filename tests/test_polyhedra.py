@@ -188,6 +188,21 @@ def test_planes_that_nearly_repeat_others(tilt):
         check_mesh(polyhedron_mesh(planes, BOX), planes)
 
 
+@pytest.mark.parametrize("tilt", [1e-14, 1e-12, 1e-10, 1e-8, 1e-7, 1e-6])
+def test_faces_of_planes_that_lean_against_one_another(tilt):
+    """Of what float32 does not tell apart one plane does for all, and the mesh has its number."""
+    normals = [np.roll((a, b, 0.0), axis) for a in (1, -1) for b in (tilt, -tilt) for axis in range(3)]
+    planes = [(*normal.tolist(), -1.0) for normal in normals] + [(*n[::-1].tolist(), -1.0) for n in normals]
+    mesh = polyhedron_mesh(planes, BOX)
+    assert mesh.to_trimesh().is_watertight
+    assert volume(mesh) == pytest.approx(8, rel=1e-5)
+    assert mesh.deviation < 1e-6
+    # Each triangle lies on the plane that it names.
+    normal = unit(planes)[mesh.planes].astype(float)
+    corners = mesh.vertices[mesh.triangles]
+    assert np.abs(np.einsum("mik,mk->mi", corners, normal[:, :3]) + normal[:, 3:]).max() < 1e-6
+
+
 # ---- Any body --------------------------------------------------------------------------------------------------------
 
 

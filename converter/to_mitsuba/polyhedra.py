@@ -41,6 +41,9 @@ HAIR = 2.0**-46
 the planes, 2^-53 each, move vertices by less."""
 SMALLEST = 2.0**-126
 """Below this float32 numbers lose digits."""
+NEAR = 2.0**-21
+"""Planes whose unit normals differ by no more than this, and whose offsets by no more as a share of the largest, nearly
+coincide: a few roundings of float32."""
 OFF = 2.0**-44
 """How far a vertex may be from the planes of its faces, as a share of the body's distance from the origin: it is
 computed to about 2^-53 of that, and moved by a `HAIR` at most."""
@@ -94,6 +97,31 @@ def polyhedron_mesh(planes: Sequence[HalfSpace], bounds: Box, name: str = "polyh
         PolyhedronError: there is no volume, no method gives a closed surface, or float32 numbers do not hold it.
 
     """
+    try:
+        return _whole_mesh(planes, bounds, name)
+    except PolyhedronError:
+        # Where planes nearly coincide, corners are nowhere in particular; float32 does not tell such planes apart.
+        distinct = _distinct(planes)
+        if len(distinct) == len(planes):
+            raise
+        mesh = _whole_mesh([planes[k] for k in distinct], bounds, name)
+        outside = tuple(distinct[k] for k in mesh.outside)
+        return replace(mesh, planes=np.array(distinct, dtype=np.int32)[mesh.planes], outside=outside)
+
+
+def _distinct(planes: Sequence[HalfSpace]) -> list[int]:
+    """The planes but those that nearly coincide with an earlier one."""
+    unit = _unit_planes([tuple(map(float, plane)) for plane in planes]).astype(np.float64)
+    allowed = NEAR * np.array([1.0, 1.0, 1.0, np.abs(unit[:, 3]).max()])
+    result: list[int] = []
+    for k, plane in enumerate(unit):
+        if not np.any(np.all(np.abs(unit[result] - plane) <= allowed, axis=1)):
+            result.append(k)
+    return result
+
+
+def _whole_mesh(planes: Sequence[HalfSpace], bounds: Box, name: str) -> PolyhedronMesh:
+    """The mesh with a face for each plane that has one."""
     body = [tuple(map(float, plane)) for plane in planes]
     closed, faces = body, polyhedron_faces(body)
     kept: Sequence[int] = [k for k, face in enumerate(faces) if face.neighbors]
