@@ -17,7 +17,7 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple
+from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
 
 import numpy as np
 
@@ -48,15 +48,7 @@ Class = Literal[
     "ray not followed",
     "unexplained",
 ]
-CLASSES: tuple[Class, ...] = (
-    "silhouette",
-    "checker or texel edge",
-    "shadow edge",
-    "critical angle",
-    "deep reflection",
-    "ray not followed",
-    "unexplained",
-)
+CLASSES: tuple[Class, ...] = get_args(Class)
 """What a boundary is of. A silhouette is any place where a ray comes to meet another object or another face; a ray is
 not followed by a method that has another cut-off or depth, or where its weight is the cut-off itself."""
 
