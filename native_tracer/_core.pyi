@@ -1,4 +1,4 @@
-"""The compiled tracer; `native_tracer`, `native_tracer.halfspaces` and `native_tracer.bvh` are its public faces."""
+"""The compiled tracer. Its public faces are `native_tracer` and its modules `halfspaces`, `bvh` and `incidence`."""
 
 from collections.abc import Callable, Sequence
 from typing import Any, Literal, TypedDict, overload
@@ -124,6 +124,9 @@ def quantize(pixels: Buffer) -> bytes:
 
 def threaded_bvh(low: Buffer, high: Buffer) -> tuple[memoryview[float], memoryview[int], memoryview[int]]:
     """The arrays of a threaded tree over boxes; see `native_tracer.bvh`."""
+
+def surfaces_at(point: _Triple, rows: Buffer, round: Buffer) -> list[int]:
+    """Which surfaces a point lies on; see `native_tracer.incidence`."""
 
 def halfspace_bodies(coefficients: Buffer, offsets: Buffer) -> list[tuple[Any, ...]]:
     """What is known of each intersection of half-spaces; see `native_tracer.halfspaces`."""

@@ -233,7 +233,7 @@ def test_the_native_tracer_in_double_holds_for_six_decades_at_least(made):
     start = easiest(made, made.values)
     for value in made.values:
         decades = 1e-6 * made.values[start] <= value <= 1e6 * made.values[start]
-        if decades and value <= CHAOTIC.get(made.name, value):
+        if (decades or value == 0) and value <= CHAOTIC.get(made.name, value):
             case = made.case(value)
             assert wrong_share(case, NativeRenderer()) <= case.allowed, f"{made.name} {value:g}"
 
@@ -245,7 +245,7 @@ def test_mitsuba_in_double_holds_for_three_decades_at_least(made, intersections)
     start = easiest(made, made.values)
     for value in made.values:
         decades = 1e-3 * made.values[start] <= value <= 1e3 * made.values[start]
-        if decades and value <= CHAOTIC.get(made.name, value):
+        if (decades or value == 0) and value <= CHAOTIC.get(made.name, value):
             case = made.case(value)
             assert wrong_share(case, renderer) <= case.allowed, f"{made.name} {value:g}"
 
@@ -286,6 +286,14 @@ def test_every_family_has_a_panel_and_every_method_a_name_that_covers_no_other()
         crosses = [line.get_xdata().tolist() for line in axes.lines if line.get_marker() == "x"]
         failing = [study.family.values[i] for method in ("native-float",) for i in study.first_failures(method)]
         assert failing in crosses
+
+
+def test_zero_is_a_decade_beyond_the_other_values():
+    figure = stability_figure([study_family(family((1.0, 0.1, 0.01, 0.0)), [NATIVE], Fake(0))])
+    (axes,) = figure.axes
+    (line,) = [line for line in axes.lines if line.get_zorder() == 3]
+    assert line.get_xdata().tolist() == [1.0, 0.1, 0.01, 0.001]
+    assert axes.get_xticklabels()[-1].get_text() == "0"
 
 
 def test_the_lines_are_black_and_grey_and_differ():

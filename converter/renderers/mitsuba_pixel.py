@@ -28,7 +28,7 @@ def trace_pixels(scene: Any, settings: Settings, pixels: Sequence[tuple[int, int
     integrator, sensor = scene.integrator(), scene.sensors()[0]
     offsets = integrator.sample_offsets(settings.samples)
     x, y = (np.array([pixel[k] + offset[k] for pixel in pixels for offset in offsets], float) for k in (0, 1))
-    with integrator.prepared(scene):
+    with integrator.prepared(scene, sensor):
         rays = _Rays.of(integrator.primary_ray(sensor, mi.Point2d(x, y)), len(x))
         roots = _Tracer(integrator).trees(rays)
     result = []

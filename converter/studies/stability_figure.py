@@ -103,18 +103,26 @@ def _draw_panel(axes: "Axes", study: FamilyStudy, scale: ErrorScale) -> None:
     axes.set_title(family.name, fontsize=8, fontweight="bold", loc="left", pad=25)
     about = textwrap.fill(family.about, 88)
     axes.text(0, 1.03, about, fontsize=5.5, transform=axes.transAxes, va="bottom", color="0.2")
-    _scale_axes(axes, study, scale)
+    places = _places(family.values)
+    _scale_axes(axes, study, scale, places)
     for line, style in zip(drawn, STYLES * len(drawn), strict=False):
+        x = [places[value] for value in line.values]
         y = [scale.place(share) for share in line.shares]
-        axes.plot(line.values, y, zorder=3, clip_on=False, **style)
+        axes.plot(x, y, zorder=3, clip_on=False, **style)
         failing = list(line.first_failures)
-        marked = [line.values[i] for i in failing], [y[i] for i in failing]
+        marked = [x[i] for i in failing], [y[i] for i in failing]
         axes.plot(*marked, "x", color="black", ms=8, mew=1.3, zorder=4, clip_on=False)
     _name_lines(axes, drawn, scale)
 
 
-def _scale_axes(axes: "Axes", study: FamilyStudy, scale: ErrorScale) -> None:
-    values = study.family.values
+def _places(values: Sequence[float]) -> dict[float, float]:
+    """Where values are drawn on a logarithmic axis: 0 a decade below the others."""
+    least = min((value for value in values if value > 0), default=1.0)
+    return {value: value or least / 10 for value in values}
+
+
+def _scale_axes(axes: "Axes", study: FamilyStudy, scale: ErrorScale, places: dict[float, float]) -> None:
+    values = list(places.values())
     axes.set_xscale("log")
     axes.set_yscale("log")
     room = (max(values) / min(values)) ** 0.03
@@ -130,7 +138,10 @@ def _scale_axes(axes: "Axes", study: FamilyStudy, scale: ErrorScale) -> None:
     for value in values:
         if abs(math.log(value / shown[-1])) > abs(math.log(values[-1] / values[0])) / 7.5:
             shown.append(value)
-    axes.set_xticks(shown, [number(value) for value in shown], fontsize=6)
+    if 0 in places and shown[-1] != places[0]:
+        shown[-1] = places[0]
+    told = {place: number(value) for value, place in places.items()}
+    axes.set_xticks(shown, [told[place] for place in shown], fontsize=6)
     axes.set_xlabel(study.family.stress, fontsize=6.5, labelpad=1.5)
 
 

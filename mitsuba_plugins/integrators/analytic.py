@@ -10,6 +10,7 @@ from typing import Any
 import drjit as dr
 import mitsuba as mi
 
+from mitsuba_plugins.integrators.contacts import LightContacts
 from mitsuba_plugins.integrators.exact import (
     ExactSurfaces,
     Records,
@@ -25,13 +26,13 @@ from mitsuba_plugins.integrators.rays import NOTHING, Ray, Real
 class AnalyticSurfaces(ExactSurfaces):
     """Surfaces whose numbers are kernel arguments: scenes that differ in numbers only share one compiled kernel."""
 
-    def __init__(self, types: Real, surfaces: list[Surface], records: Records) -> None:
-        super().__init__(records)
+    def __init__(self, types: Real, surfaces: list[Surface], records: Records, contacts: LightContacts) -> None:
+        super().__init__(records, contacts)
         self._types = types
         self._spheres = [self._ball(surface.sphere) for surface in surfaces]
         self._bounds = [self._ball(_bound(surface)) for surface in surfaces]
         self._planes = [
-            [(types.Vector3(*plane[:3]), types.Float(plane[3])) for plane in surface.planes.values()]
+            [(types.Vector3(*plane[:3]), types.Float(plane[3])) for plane in surface.unit_rows if surface.planes]
             for surface in surfaces
         ]
         dr.make_opaque(self._spheres, self._planes, self._bounds)
@@ -56,13 +57,16 @@ class AnalyticSurfaces(ExactSurfaces):
         return t_best, object_best, record_best
 
     @dr.syntax
-    def find_blocker(self, ray: Ray, distance: Any, active: Any) -> Any:
-        """Some object that the ray meets before `distance`, or NOTHING."""
+    def find_blocker(self, ray: Ray, distance: Any, light: Any, active: Any) -> Any:
+        """Some object that the ray meets before it comes to a light at `distance`, or NOTHING."""
         found = dr.full(mi.UInt32, NOTHING, dr.width(ray.d))
         if active:
             for index in range(len(self._spheres)):
-                t, _ = self._intersect(index, ray)
-                found = dr.select(t < distance, mi.UInt32(index), found)
+                t, record = self._intersect(index, ray)
+                blocks = t < distance
+                if dr.hint(index in self.contacts.objects, mode="scalar"):
+                    blocks &= ~self.contacts.lies_at(light, record, ray.d, t, distance, active)
+                found = dr.select(blocks, mi.UInt32(index), found)
         return found
 
     def _intersect(self, index: int, ray: Ray) -> tuple[Any, Any]:

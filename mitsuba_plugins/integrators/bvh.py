@@ -12,6 +12,7 @@ import mitsuba as mi
 import numpy as np
 
 from mitsuba_plugins.integrators.columns import column
+from mitsuba_plugins.integrators.contacts import LightContacts
 from mitsuba_plugins.integrators.exact import (
     ExactSurfaces,
     Records,
@@ -31,8 +32,8 @@ SLACK = 2.0**-20
 class BvhSurfaces(ExactSurfaces):
     """Surfaces in a tree of single-precision boxes, which are rounded outward: what they let through is exact."""
 
-    def __init__(self, types: Real, surfaces: list[Surface], records: Records) -> None:
-        super().__init__(records)
+    def __init__(self, types: Real, surfaces: list[Surface], records: Records, contacts: LightContacts) -> None:
+        super().__init__(records, contacts)
         self._types = types
         self._nodes, self._node_count = _nodes(surfaces)
         self._any_sphere = any(surface.sphere is not None for surface in surfaces)
@@ -43,14 +44,15 @@ class BvhSurfaces(ExactSurfaces):
 
     def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any]:
         """Distance (infinite for none), object (NOTHING for none) and record of the first hit."""
-        return self._search(ray, self._types.Float(dr.inf), active, anything=False)
+        return self._search(ray, self._types.Float(dr.inf), None, active)
 
-    def find_blocker(self, ray: Ray, distance: Any, active: Any) -> Any:
-        """Some object that the ray meets before `distance`, or NOTHING."""
-        return self._search(ray, distance, active, anything=True)[1]
+    def find_blocker(self, ray: Ray, distance: Any, light: Any, active: Any) -> Any:
+        """Some object that the ray meets before it comes to a light at `distance`, or NOTHING."""
+        return self._search(ray, distance, light, active)[1]
 
     @dr.syntax
-    def _search(self, ray: Ray, distance: Any, active: Any, anything: bool) -> tuple[Any, Any, Any]:
+    def _search(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any, Any]:
+        """What is met first before `distance`; with a light there, anything that is in its way."""
         width = dr.width(ray.d)
         t_best = dr.zeros(self._types.Float, width) + distance
         object_best = dr.full(mi.UInt32, NOTHING, width)
@@ -74,11 +76,13 @@ class BvhSurfaces(ExactSurfaces):
                 # Of surfaces at the same distance the first counts.
                 ties = (t == t_best) & (object_best != NOTHING) & (index < object_best)
                 closer = tested & ((t < t_best) | ties)
+                if dr.hint(light is not None, mode="scalar"):
+                    closer &= ~self.contacts.lies_at(light, record, ray.d, t, distance, closer)
                 t_best = dr.select(closer, t, t_best)
                 object_best = dr.select(closer, index, object_best)
                 record_best = dr.select(closer, record, record_best)
                 farthest = mi.Float(t_best) * (1 + SLACK)
-            if dr.hint(anything, mode="scalar"):
+            if dr.hint(light is not None, mode="scalar"):
                 searching &= object_best == NOTHING
             # All rays walk until each is at a leaf, so that they are tested against surfaces together.
             index = dr.full(mi.UInt32, NOTHING, width)

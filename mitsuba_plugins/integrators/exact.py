@@ -7,6 +7,7 @@ import drjit as dr
 import mitsuba as mi
 
 from mitsuba_plugins.integrators.columns import column
+from mitsuba_plugins.integrators.contacts import LightContacts
 from mitsuba_plugins.integrators.geometry import Surface
 from mitsuba_plugins.integrators.rays import NOTHING, Hit, Ray, Real, spawn
 
@@ -19,7 +20,7 @@ class Records:
         self.first = []
         for surface in surfaces:
             self.first.append(len(rows))
-            rows.extend([surface.sphere] if surface.sphere is not None else surface.planes.values())
+            rows.extend(surface.unit_rows)
         self._types = types
         self._rows = column(types.Float, rows or [(0.0,) * 4])
         self._is_sphere = column(mi.Bool, [surface.sphere is not None for surface in surfaces])
@@ -49,8 +50,9 @@ class ExactSurfaces:
     Masks of active rays come from `lanes`.
     """
 
-    def __init__(self, records: Records) -> None:
+    def __init__(self, records: Records, contacts: LightContacts) -> None:
         self.records = records
+        self.contacts = contacts
 
     def closest(self, ray: Ray, active: Any) -> Hit:
         """The first surface that a ray meets, the point moved onto it to shed the error along the normal."""
@@ -64,16 +66,16 @@ class ExactSurfaces:
         """The ray that leaves `hit` in direction `d`, on the given side of the object."""
         return spawn(hit, d, inside)
 
-    def blocker(self, hit: Hit, d: Any, distance: Any, active: Any) -> Any:
-        """Some object between `hit` and what is at `distance` in direction `d`, on the side it was seen from."""
-        return self.find_blocker(spawn(hit, d, hit.inside), distance, active)
+    def blocker(self, hit: Hit, d: Any, distance: Any, light: Any, active: Any) -> Any:
+        """Some object between `hit` and a light at `distance` in direction `d`, on the side it was seen from."""
+        return self.find_blocker(spawn(hit, d, hit.inside), distance, light, active)
 
     def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any]:
         """Distance (infinite for none), object (NOTHING for none) and record of the first hit."""
         raise NotImplementedError
 
-    def find_blocker(self, ray: Ray, distance: Any, active: Any) -> Any:
-        """Some object that the ray meets before `distance`, or NOTHING."""
+    def find_blocker(self, ray: Ray, distance: Any, light: Any, active: Any) -> Any:
+        """Some object that the ray meets before it comes to a light at `distance`, or NOTHING."""
         raise NotImplementedError
 
 

@@ -23,7 +23,7 @@ Plane = tuple[float, float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Surface:
-    """A sphere (center, radius) or a convex polyhedron (planes with unit normals, by their index in the scene)."""
+    """A sphere (center, radius) or a convex polyhedron (planes, by their index in the scene)."""
 
     name: str
     material: str
@@ -32,6 +32,16 @@ class Surface:
     box: tuple[Vector, Vector] | None = None  # around it, with room for rounding; None where that is not finite
     triangles: tuple[int, ...] = ()
     deviation: float = 0.0
+
+    @property
+    def rows(self) -> list[Plane]:
+        """The sphere, or the planes, with normals of any length."""
+        return [self.sphere] if self.sphere is not None else list(self.planes.values())
+
+    @property
+    def unit_rows(self) -> list[Plane]:
+        """The sphere, or the planes with unit normals."""
+        return [self.sphere] if self.sphere is not None else list(map(_normalised, self.planes.values()))
 
 
 class Geometry:
@@ -63,7 +73,7 @@ def _surface(name: str, entry: dict[str, Any]) -> Surface:
     if "sphere" in entry:
         x, y, z, r = entry["sphere"]
         return Surface(name, material, (x, y, z, r), box=_roomy((x - r, y - r, z - r), (x + r, y + r, z + r)))
-    planes = {int(index): _normalised(plane) for index, plane in entry["planes"].items()}
+    planes = {int(index): _plane(*plane) for index, plane in entry["planes"].items()}
     box = _roomy(*entry["box"]) if entry["box"] is not None else None
     return Surface(name, material, None, planes, box, tuple(entry.get("triangles", ())), entry.get("deviation", 0.0))
 
@@ -76,7 +86,11 @@ def _roomy(low: Vector, high: Vector) -> tuple[Vector, Vector] | None:
     return corners if all(map(math.isfinite, (*corners[0], *corners[1]))) else None
 
 
-def _normalised(plane: list[float]) -> Plane:
+def _plane(a: float, b: float, c: float, d: float) -> Plane:
+    return a, b, c, d
+
+
+def _normalised(plane: Plane) -> Plane:
     a, b, c, d = plane
     length = math.hypot(a, b, c)
     return a / length, b / length, c / length, d / length

@@ -39,8 +39,8 @@ class MitsubaSurfaces:
         """The ray that leaves `hit` in direction `d`."""
         return Ray(self._offset(hit, d), d, hit.object, hit.record, inside, mi.Float(0))
 
-    def blocker(self, hit: Hit, d: Any, distance: Any, active: Any) -> Any:
-        """The first object between `hit` and what is at `distance` in direction `d`, or NOTHING."""
+    def blocker(self, hit: Hit, d: Any, distance: Any, light: Any, active: Any) -> Any:
+        """The first object between `hit` and a light at `distance` in direction `d`, or NOTHING."""
         origin = self._offset(hit, d)
         to_target = hit.p + d * distance - origin
         length = dr.norm(to_target)

@@ -14,6 +14,7 @@ import drjit as dr
 import mitsuba as mi
 
 from mitsuba_plugins.integrators.columns import column
+from mitsuba_plugins.integrators.contacts import LightContacts
 from mitsuba_plugins.integrators.exact import ExactSurfaces, Records, sphere_distance
 from mitsuba_plugins.integrators.geometry import Surface
 from mitsuba_plugins.integrators.primitives import Primitives
@@ -27,8 +28,10 @@ MOST_STEPS = 32
 class MeshSurfaces(ExactSurfaces):
     """The shapes of a Mitsuba scene, with the exact surfaces they were made from."""
 
-    def __init__(self, types: Real, scene: Any, surfaces: list[Surface], records: Records) -> None:
-        super().__init__(records)
+    def __init__(
+        self, types: Real, scene: Any, surfaces: list[Surface], records: Records, contacts: LightContacts
+    ) -> None:
+        super().__init__(records, contacts)
         self._types = types
         self._scene = scene
         self._primitives = Primitives(scene, surfaces, records)
@@ -37,15 +40,16 @@ class MeshSurfaces(ExactSurfaces):
 
     def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any]:
         """Distance (infinite for none), object (NOTHING for none) and record of the first hit."""
-        return self._search(ray, self._types.Float(dr.inf), active)
+        return self._search(ray, self._types.Float(dr.inf), None, active)
 
-    def find_blocker(self, ray: Ray, distance: Any, active: Any) -> Any:
-        """The first object that the ray meets before `distance`, or NOTHING."""
+    def find_blocker(self, ray: Ray, distance: Any, light: Any, active: Any) -> Any:
+        """The first object that the ray meets before it comes to a light at `distance`, or NOTHING."""
         # Not Scene.ray_test, which is less careful with distant spheres than ray_intersect_preliminary.
-        return self._search(ray, distance, active)[1]
+        return self._search(ray, distance, light, active)[1]
 
     @dr.syntax
-    def _search(self, ray: Ray, distance: Any, active: Any) -> tuple[Any, Any, Any]:
+    def _search(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any, Any]:
+        """What is met first before `distance`, at which there may be a light."""
         width = dr.width(ray.d)
         start = self._types.Point3(self._start(ray, active))
         t = dr.full(self._types.Float, dr.inf, width)
@@ -61,6 +65,8 @@ class MeshSurfaces(ExactSurfaces):
             t_exact = self._distance(index, index_record, ray, met)
             allowed = t_exact < dr.inf
             accepted = met & allowed & (t_exact < distance)
+            if dr.hint(light is not None, mode="scalar"):
+                accepted &= ~self.contacts.lies_at(light, index_record, ray.d, t_exact, distance, accepted)
             t = dr.select(accepted, t_exact, t)
             found = dr.select(accepted, index, found)
             record = dr.select(accepted, index_record, record)

@@ -10,6 +10,7 @@ from typing import Any
 
 import drjit as dr
 import mitsuba as mi
+import numpy as np
 
 from mitsuba_plugins.integrators.columns import column
 from mitsuba_plugins.integrators.rays import Real
@@ -94,12 +95,16 @@ class Lights:
             if not hasattr(emitter, "attenuation"):
                 raise ValueError(f"whitted: every light is an 'attenuated_point', found {type(emitter).__name__}")
         self.count = len(emitters)
+        self.positions = np.zeros((0, 3))
+        """(n, 3), in double precision."""
         if emitters:
             zero = mi.Float64(0)
             places = [n for e in emitters for n in (*e.position, zero, *e.attenuation, zero)]
-            self._places = types.Float(dr.concat(places))
+            exact = dr.concat(places)
+            self._places = types.Float(exact)
             self._colors = dr.concat([n for e in emitters for n in (*e.color, mi.Float(0))])
             dr.make_opaque(self._places, self._colors)
+            self.positions = np.array(dr.detach(exact)).reshape(-1, 8)[:, :3]
 
     def get(self, light: Any, active: Any) -> tuple[Any, Any, Any]:
         """Position (Point3), colour (Color3f) and attenuation (Vector3) of a light, by its index."""

@@ -7,9 +7,11 @@ from typing import Any
 
 import drjit as dr
 import mitsuba as mi
+import numpy as np
 
 from mitsuba_plugins.integrators.analytic import AnalyticSurfaces
 from mitsuba_plugins.integrators.bvh import BvhSurfaces
+from mitsuba_plugins.integrators.contacts import Contacts, EyeContact, LightContacts
 from mitsuba_plugins.integrators.exact import Records
 from mitsuba_plugins.integrators.geometry import parse_geometry
 from mitsuba_plugins.integrators.interactions import MitsubaSurfaces
@@ -129,6 +131,7 @@ class Whitted(mi.SamplingIntegrator):
         self.highlights = props.get("highlights", True)
         self.stack_size = max(1, props.get("max_depth", 16))
         self._tracer: Any = None
+        self._eye_contact: EyeContact | None = None
 
     @property
     def surfaces(self):
@@ -138,25 +141,29 @@ class Whitted(mi.SamplingIntegrator):
     # ------------------------------------------------------------------ preparation
 
     @contextmanager
-    def prepared(self, scene):
-        """Lay out what the kernel reads: surfaces, finishes, pigments, lights; the methods below need it.
+    def prepared(self, scene, sensor=None):
+        """Lay out what the kernel reads: surfaces, finishes, pigments, lights, and what the eye of a `pinhole` lies on;
+        the methods below need it.
 
         Let go of at the end: it may hold the scene, which holds this integrator, and such circles are never freed.
         """
         records = Records(self.types, self.surfaces)
         self.first_records = records.first
-        if self.intersections == "analytic":
-            self._tracer = AnalyticSurfaces(self.types, self.surfaces, records)
-        elif self.intersections == "bvh":
-            self._tracer = BvhSurfaces(self.types, self.surfaces, records)
-        elif self.intersections == "mesh":
-            self._tracer = MeshSurfaces(self.types, scene, self.surfaces, records)
-        else:
-            self._tracer = MitsubaSurfaces(scene, self.surfaces, records, self.intersections)
-        # Read anew each time, too: these are what mitsuba.traverse lets a user change.
+        # These, too, are read anew each time: they are what mitsuba.traverse lets a user change.
         self._materials = Materials(self.types, [self._bsdfs.by_name[surface.material] for surface in self.surfaces])
         self._lights = Lights(self.types, scene.emitters())
         self.light_count = self._lights.count
+        contacts = Contacts(self.surfaces)
+        self._light_contacts = LightContacts(self.types, contacts, self._lights.positions)
+        self._eye_contact = EyeContact(self.types, contacts, np.ravel(sensor.eye)) if hasattr(sensor, "eye") else None
+        if self.intersections == "analytic":
+            self._tracer = AnalyticSurfaces(self.types, self.surfaces, records, self._light_contacts)
+        elif self.intersections == "bvh":
+            self._tracer = BvhSurfaces(self.types, self.surfaces, records, self._light_contacts)
+        elif self.intersections == "mesh":
+            self._tracer = MeshSurfaces(self.types, scene, self.surfaces, records, self._light_contacts)
+        else:
+            self._tracer = MitsubaSurfaces(scene, self.surfaces, records, self.intersections)
         try:
             yield
         finally:
@@ -181,8 +188,8 @@ class Whitted(mi.SamplingIntegrator):
         to_light = to_light / distance
         n = dr.select(hit.inside, -hit.n, hit.n)
         cosine = dr.dot(n, to_light)
-        facing = active & (cosine > 0)
-        blocker = self._tracer.blocker(hit, to_light, distance, facing)
+        facing = active & (cosine > 0) & ~self._light_contacts.grazes(index, hit.record, active)
+        blocker = self._tracer.blocker(hit, to_light, distance, index, facing)
         attenuation = a + distance * (b + distance * c)
         irradiance = (emission / mi.Float(attenuation)) & facing & (blocker == NOTHING)
         diffuse = irradiance * color * (finish.kd * mi.Float(cosine))
@@ -306,7 +313,7 @@ class Whitted(mi.SamplingIntegrator):
 
         """
         offsets = self.sample_offsets(spp or sensor.sampler().sample_count())
-        with self.prepared(scene):
+        with self.prepared(scene, sensor):
             yield from self._bands(sensor, offsets)
 
     def _bands(self, sensor, offsets):
@@ -354,7 +361,8 @@ class Whitted(mi.SamplingIntegrator):
     def primary_ray(self, sensor, position) -> Ray:
         """The ray through a film position (Point2d, in pixels), in double precision where the sensor has it."""
         if hasattr(sensor, "primary_ray"):
-            return start_ray(self.types, *sensor.primary_ray(position))
+            ray = start_ray(self.types, *sensor.primary_ray(position))
+            return ray if self._eye_contact is None else self._eye_contact.start(ray)
         size, offset = sensor.film().crop_size(), sensor.film().crop_offset()
         sample = mi.Point2f((position - mi.Point2d(offset)) / mi.Point2d(size))
         ray, _ = sensor.sample_ray(0.0, 0.5, sample, mi.Point2f(0.5))

@@ -8,3 +8,4 @@ void bind_scene(nanobind::module_& module);
 void bind_render(nanobind::module_& module);
 void bind_halfspaces(nanobind::module_& module);
 void bind_bvh(nanobind::module_& module);
+void bind_incidence(nanobind::module_& module);

@@ -15,8 +15,10 @@ namespace whitted::WHITTED_ISA {
 template <typename Real>
 class PrimaryRays {
  public:
-    PrimaryRays(const Camera<Real>& camera, const RenderSettings& settings, const Tile& tile)
+    PrimaryRays(const Camera<Real>& camera, const EyeContact<Real>& contact, const RenderSettings& settings,
+                const Tile& tile)
         : camera_(camera),
+          contact_(contact),
           tile_(tile),
           grid_(settings.grid),
           shift_(settings.corner ? Real(0.5) : Real(0)),
@@ -36,8 +38,9 @@ class PrimaryRays {
         group.rays.direction =
             camera_.directions(columns + L(offset(sample_ % grid_)), rows + L(offset(sample_ / grid_)));
         group.rays.t_min = Real(0);
-        group.rays.object = group.rays.patch = -1;
-        group.rays.inside = Mask<Real>::none();
+        group.rays.object = contact_.object;
+        group.rays.patch = contact_.patch;
+        group.rays.inside = contact_.leads_inside(group.rays.direction);
         group.weight = Real(1);
         group.depth = 0;
         group.pixel = Indices<Real>((row_ - tile_.top) * (tile_.right - tile_.left) + column_ - tile_.left) +
@@ -65,6 +68,7 @@ class PrimaryRays {
     Real offset(int place) const { return (static_cast<Real>(place) + Real(0.5)) / static_cast<Real>(grid_) - shift_; }
 
     const Camera<Real>& camera_;
+    const EyeContact<Real>& contact_;
     const Tile tile_;
     const int grid_;
     const Real shift_;
@@ -84,7 +88,7 @@ class RealKernel final : public Kernel {
         using Sum = typename Tracer<Real, Unobserved>::Sum;
         std::array<Color<Sum>, tile_width * tile_height> sums;
         sums.fill({0, 0, 0});
-        if (!tracer.trace(PrimaryRays<Real>(camera_, settings_, tile), sums.data(), counts, stop)) {
+        if (!tracer.trace(PrimaryRays<Real>(camera_, scene_.eye_contact, settings_, tile), sums.data(), counts, stop)) {
             return false;
         }
         const int grid2 = settings_.grid * settings_.grid;
@@ -103,7 +107,7 @@ class RealKernel final : public Kernel {
         Recorder recorder(tree);
         Tracer<Real, Recorder> tracer(scene_, settings_, recorder);
         Color<typename Tracer<Real, Recorder>::Sum> sum{0, 0, 0};
-        const PrimaryRays<Real> rays(camera_, settings_, {column, row, column + 1, row + 1});
+        const PrimaryRays<Real> rays(camera_, scene_.eye_contact, settings_, {column, row, column + 1, row + 1});
         RayCounts counts;
         tracer.trace(rays, &sum, counts, std::atomic<bool>(false));
         store(sum, settings_.grid * settings_.grid, color);

@@ -11,6 +11,7 @@
 
 #include "camera.h"
 #include "description.h"
+#include "incidence.h"
 #include "pigment.h"
 #include "search.h"
 #include "surface.h"
@@ -22,12 +23,60 @@ namespace whitted::WHITTED_ISA {
 template <typename Real>
 using View = std::vector<Sight<Real>>;
 
+// A patch that a point lies on, the eye or a light.
+template <typename Real>
+struct Contact {
+    int object, patch;
+    Vector<Real> outward;  // the surface's unit normal there
+    bool round;
+};
+
 template <typename Real>
 struct Light {
+    using L = Lanes<Real>;
     Vector<Real> position;
     Color<Real> color;
     Real a, b, c;  // dimmed by 1 / (a + b d + c d^2) at distance d
     View<Real> view;
+    std::vector<Contact<Real>> contacts;
+
+    // Whether rays that lead to the light cross an object there, at its surface that the light lies on, and no sooner:
+    // a plane wherever they do, a sphere where they reach the light from within, or from without by its near side.
+    Mask<Real> lies_at(const Crossing<Real>& crossing, const Vector<L>& direction) const {
+        Mask<Real> result = Mask<Real>::none();
+        for (const Contact<Real>& contact : contacts) {
+            const Mask<Real> arrives = crossing.inside | (dot(Vector<L>(contact.outward), direction) < L(Real(0)));
+            result |= (crossing.patch == Indices<Real>(contact.patch)) & arrives;
+        }
+        return result;
+    }
+
+    // Whether the light lies in the plane of these patches, and so shines along them.
+    Mask<Real> grazes(Indices<Real> patch) const {
+        Mask<Real> result = Mask<Real>::none();
+        for (const Contact<Real>& contact : contacts) {
+            if (!contact.round) {
+                result |= patch == Indices<Real>(contact.patch);
+            }
+        }
+        return result;
+    }
+};
+
+// What rays from the eye start on, as rays that leave a surface do. Of several objects that the eye lies on it is the
+// first.
+template <typename Real>
+struct EyeContact {
+    int object = -1, patch = -1;
+    std::vector<Vector<Real>> outward;  // of all the object's patches that the eye lies on
+
+    Mask<Real> leads_inside(const Vector<Lanes<Real>>& direction) const {
+        Mask<Real> result = outward.empty() ? Mask<Real>::none() : ~Mask<Real>::none();
+        for (const Vector<Real>& normal : outward) {
+            result &= dot(Vector<Lanes<Real>>(normal), direction) < Lanes<Real>(Real(0));
+        }
+        return result;
+    }
 };
 
 template <typename Real>
@@ -81,6 +130,7 @@ template <typename Real>
 struct Scene {
     Color<Real> ambient, background;
     View<Real> eye_view;
+    EyeContact<Real> eye_contact;
     std::vector<Light<Real>> lights;
     std::vector<Pigment<Real>> pigments;
     std::vector<Object<Real>> objects;
@@ -126,7 +176,7 @@ struct Scene {
             return any(open & light.view[static_cast<std::size_t>(sphere)].may_block(rays, distance));
         };
         for_each_crossing(rays, limit, may_hit, [&](Indices<Real> object, const Crossing<Real>& crossing) {
-            const Mask<Real> blocked = open & (crossing.t < distance);
+            const Mask<Real> blocked = open & (crossing.t < distance) & ~light.lies_at(crossing, rays.direction);
             blocker = select(blocked, object, blocker);
             open &= ~blocked;
             limit = select(open, limit, nowhere);
@@ -175,6 +225,7 @@ struct Scene {
     }
 
     void add_shape(const SceneDescription& description, int object);
+    std::vector<Contact<Real>> contacts_of(const SceneDescription& description, const Triple& point) const;
 };
 
 // ---- Preparation --------------------------------------------------------------------------------------------------
@@ -198,6 +249,7 @@ Scene<Real>::Scene(const SceneDescription& description, const SearchPlan& plan)
                           real(light.attenuation[0]),
                           real(light.attenuation[1]),
                           real(light.attenuation[2]),
+                          {},
                           {}});
     }
     for (const PigmentDescription& pigment : description.pigments) {
@@ -243,9 +295,43 @@ Scene<Real>::Scene(const SceneDescription& description, const SearchPlan& plan)
         return view;
     };
     eye_view = view_from(vector_of<Real>(description.camera.eye));
-    for (Light<Real>& light : lights) {
-        light.view = view_from(light.position);
+    for (const Contact<Real>& contact : contacts_of(description, description.camera.eye)) {
+        if (eye_contact.object < 0) {
+            eye_contact.object = contact.object;
+            eye_contact.patch = contact.patch;
+        }
+        if (contact.object == eye_contact.object) {
+            eye_contact.outward.push_back(contact.outward);
+        }
     }
+    for (std::size_t i = 0; i < lights.size(); ++i) {
+        lights[i].view = view_from(lights[i].position);
+        lights[i].contacts = contacts_of(description, description.lights[i].position);
+    }
+}
+
+template <typename Real>
+std::vector<Contact<Real>> Scene<Real>::contacts_of(const SceneDescription& description, const Triple& point) const {
+    std::vector<Contact<Real>> contacts;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        const int object = static_cast<int>(i);
+        int patch = objects[i].first_patch;
+        const auto& shape = description.objects[i].shape;
+        if (const auto* sphere = std::get_if<SphereDescription>(&shape)) {
+            if (lies_on(*sphere, point)) {
+                const Vector<Real> arm = vector_of<Real>(in_range(difference(point, sphere->center)));
+                contacts.push_back({object, patch, normalize(arm), true});
+            }
+        } else {
+            for (const Quadruple& plane : std::get_if<PolyhedronDescription>(&shape)->planes) {
+                if (lies_on(plane, point)) {
+                    contacts.push_back({object, patch, patches[static_cast<std::size_t>(patch)].anchor, false});
+                }
+                ++patch;
+            }
+        }
+    }
+    return contacts;
 }
 
 template <typename Real>

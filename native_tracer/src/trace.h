@@ -192,7 +192,7 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
         const L distance = length(path);
         const Vector<L> to_light = path * (one / distance);
         const L cosine = dot(surface.normal, to_light);
-        const Mask<Real> faces = answers & (cosine > zero);
+        const Mask<Real> faces = answers & (cosine > zero) & ~light.grazes(hits.patch);
 
         Indices<Real> blocker = -1;
         if (any(faces)) {

@@ -6,6 +6,7 @@ from converter.studies.families import (
     coincidence,
     contact,
     distance,
+    incidence,
     lights_and_camera,
     polyhedra,
     ray_trees,
@@ -26,6 +27,7 @@ FAMILIES: Mapping[str, Family] = {
         reflection,
         refraction,
         lights_and_camera,
+        incidence,
         ray_trees,
     )
     for family in module.FAMILIES

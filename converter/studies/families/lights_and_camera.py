@@ -5,7 +5,7 @@ import math
 import numpy as np
 
 from converter.scene.model import Checker, Finish, Polyhedron, Vector
-from converter.studies.families.closed_forms import directions, two_colors, window
+from converter.studies.families.closed_forms import directions, dot, long, two_colors, unit, window
 from converter.studies.families.scenes import (
     ALONG,
     BLACK,
@@ -36,6 +36,26 @@ def _highlight(alpha: float) -> Case:
     view = camera((0.0, 0.0, 4.0), (0.0, 0.0, 1.0), math.degrees(2 * math.atan(0.3 / math.sqrt(alpha))))
     made = scene(view, [(sphere((0.0, 0.0, 0.0), 1.0), WHITE, shiny)], [light((0.0, 0.0, 5.0))])
     return Case(made, _SETTINGS, None)
+
+
+def _dull(alpha: float) -> Case:
+    """A highlight as wide as the ball's lit side, but for where no light is mirrored toward the viewer."""
+    dull = Finish(0.1, 0.3, 0.6, alpha, 0.0, 0.0, 0.0)
+    eye, lamp = (0.0, 0.0, 4.0), (6.0, 4.0, -1.0)
+    view = camera(eye, (0.0, 0.0, 0.0), 34.0)
+    d = directions(view, _SETTINGS)
+    closest = -dot(long(eye), d)
+    across = long(eye) + closest[..., None] * d
+    inside = 1 - dot(across, across)
+    n = across - np.sqrt(np.maximum(inside, 0))[..., None] * d
+    to_light = unit(long(lamp) - n)
+    cosine = dot(n, to_light)
+    mirrored = dot(2 * cosine[..., None] * n - to_light, -d)
+    highlight = np.maximum(mirrored, 0) ** np.longdouble(alpha)  # 0 ** 0 = 1
+    shade = dull.ka + np.where(cosine > 0, dull.kd * cosine + dull.ks * highlight, 0)
+    made = scene(view, [(sphere((0.0, 0.0, 0.0), 1.0), WHITE, dull)], [light(lamp)])
+    truth = np.where(inside >= 0, shade, 0).astype(np.float64)
+    return Case(made, _SETTINGS, np.repeat(truth[..., None], 3, axis=2))
 
 
 def _light_distance(distance: float) -> Case:
@@ -99,6 +119,13 @@ FAMILIES = (
         "alpha",
         tuple(10.0**power for power in range(13)),
         _highlight,
+    ),
+    Family(
+        "dull",
+        "A highlight that gets so dull that it covers all that is lit: alpha becomes 0, and 0 to the power of 0 is 1.",
+        "alpha",
+        (*(10.0**-power for power in range(13)), 0.0),
+        _dull,
     ),
     Family(
         "light-distance",
