@@ -1,6 +1,6 @@
-"""Prints the figures of the README: agreement of the renderers on every scene, speed on Figure 1, memory.
+"""Prints the figures of the README: agreement of the renderers on every scene, why pixels disagree, speed, memory.
 
-    python benchmarks/figures.py [agreement] [speed] [memory]
+    python benchmarks/figures.py [agreement] [classes] [speed] [memory]
 
 Times are medians of runs that take turns, so that a machine whose speed drifts is fair to all; they depend on the
 machine, their ratios much less. POV-Ray joins where it is installed.
@@ -14,13 +14,17 @@ import subprocess
 import sys
 import tempfile
 import time
+from collections import Counter
 from collections.abc import Callable
+from functools import partial
 from pathlib import Path
 
 import numpy as np
 
+from converter.compare.classes import CLASSES, Class, explain, less_exact
 from converter.compare.metrics import compare_pixels
 from converter.renderers.base import Renderer
+from converter.renderers.methods import METHODS
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
 from converter.renderers.povray import PovrayRenderer
@@ -35,7 +39,7 @@ RUNS, FEW_RUNS = 11, 3
 
 def main() -> None:
     """Print what the command line names, or everything."""
-    parts = {"agreement": agreement, "speed": speed, "memory": memory}
+    parts = {"agreement": agreement, "classes": classes, "speed": speed, "memory": memory}
     for name in sys.argv[1:] or parts:
         parts[name]()
         print()
@@ -71,6 +75,30 @@ def agreement() -> None:
         counts = "".join(f"{count:>10}" for count in wrong)
         seconds = f"{medians[0]:>12.3f}" + "".join(f"{median:>10.3f}" for median in medians[1:])
         print(f"{file.name:<18}{counts}{seconds}  {pictures['default'].statistics['intersections']}", flush=True)
+
+
+def classes() -> None:
+    """Every pixel of all scenes at 400 x 300 in which a method disagrees with native double, by what it is near to."""
+    methods = [METHODS[name] for name in ("mitsuba", "native-float", "mitsuba-mesh", "mitsuba-ulp", "mitsuba-offset")]
+    settings, native = Settings(width=400, height=300), METHODS["native"]
+    counts: dict[str, Counter[Class]] = {method.name: Counter() for method in methods}
+    for file in sorted((ROOT / "scenes").glob("*.in")):
+        scene = load_scene(file)
+        truth = np.asarray(native.renderer().render(scene, settings).pixels)
+        for method in methods:
+            renderer = method.renderer()
+            traces = tuple(partial(r.trace_pixels, scene, settings) for r in (native.renderer(), renderer))
+            pictures = truth, np.asarray(renderer.render(scene, settings).pixels)
+            arithmetic = less_exact(native, method)
+            found = explain(scene, pictures, (settings, settings), traces, arithmetic, settings.width * settings.height)
+            if len(found.pixels) < found.disagreeing:
+                raise SystemExit(f"{file.name}, {method.name}: only {len(found.pixels)} of {found.disagreeing} traced")
+            counts[method.name].update(found.counts())
+    print("400 x 300, all scenes: pixels that differ from native double by more than 1/255, by what they are near to")
+    print(f"{'':<16}{'all':>6}{''.join(f'{name:>{len(name) + 3}}' for name in CLASSES)}")
+    for name, by_class in counts.items():
+        columns = "".join(f"{by_class[kind]:>{len(kind) + 3}}" for kind in CLASSES)
+        print(f"{name:<16}{by_class.total():>6}{columns}")
 
 
 def speed() -> None:

@@ -118,6 +118,29 @@ def test_every_disagreeing_pixel_of_the_gallery_is_explained(mi, file, name):
     assert [pixel for pixel in explanation.pixels if pixel.kind == "unexplained"] == []
 
 
+@pytest.mark.parametrize("name", ["mitsuba-ulp", "mitsuba-offset"])
+@pytest.mark.parametrize("file", SCENES, ids=lambda file: file.stem)
+def test_pixels_that_offsets_get_wrong_are_explained(mi, file, name):
+    """A sample of them, for there are hundreds in some scenes; `benchmarks/figures.py classes` goes through all."""
+    scene, picture = reference(file)
+    explanation = explained(scene, picture, METHODS[name], most=32)
+    assert len(explanation.pixels) == min(explanation.disagreeing, 32)
+    assert [pixel for pixel in explanation.pixels if pixel.kind == "unexplained"] == []
+
+
+def test_a_narrow_triangle_of_rounded_corners_leans(mi):
+    """A stone's face of which the triangle that is met leans by 1/100: its mirrored ray meets another tile."""
+    scene, picture = reference(SCENES[[file.stem for file in SCENES].index("brilliant")])
+    method = METHODS["mitsuba-offset"]
+    renderer = method.renderer()
+    alone = picture.copy()
+    alone[247, 43] = np.asarray(renderer.render(scene, SETTINGS).pixels)[247, 43]
+    traces = [partial(r.trace_pixels, scene, SETTINGS) for r in (NATIVE.renderer(), renderer)]
+    (pixel,) = explain(scene, (picture, alone), (SETTINGS, SETTINGS), tuple(traces), "offset").pixels
+    assert (pixel.x, pixel.y) == (43, 247)
+    assert pixel.kind == "deep reflection"
+
+
 # ---- What is no edge
 
 

@@ -31,13 +31,14 @@ from converter.compare.margins import (
 )
 from converter.compare.metrics import LIMIT, Pixels, absolute_difference
 from converter.compare.rays import Pair, Ray, pair_trees
-from converter.scene.model import Scene, Shape, Sphere
+from converter.scene.model import Polyhedron, Scene, Shape, Sphere
 from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings
 from converter.scene.warnings import arithmetic_of
 
 if TYPE_CHECKING:
     from converter.renderers.methods import Method
+    from converter.to_mitsuba.polyhedra import PolyhedronMesh
 
 Class = Literal[
     "silhouette",
@@ -67,20 +68,21 @@ class Arithmetic(NamedTuple):
     """What of a method's arithmetic decides about its errors, as shares of the largest number involved.
 
     `unit` is that of its roundings. Nothing is met nearer than `hidden` to where a ray starts, and `moved` is how far
-    off the surface it starts.
+    off the surface it starts. With `facets` normals are those of triangles whose corners are rounded.
     """
 
     unit: float
     hidden: float
     moved: float
+    facets: bool = False
 
 
 ARITHMETICS = {
     "double": Arithmetic(2.0**-52, 2.0**-47, 0.0),
     "float": Arithmetic(2.0**-23, 2.0**-18, 0.0),
     "mesh": Arithmetic(2.0**-23, 2.0**-20, 2.0**-20),
-    "ulp": Arithmetic(2.0**-23, 2.0**-16, 2.0**-16),
-    "offset": Arithmetic(2.0**-23, 2.0**-10, 2.0**-13),
+    "ulp": Arithmetic(2.0**-23, 2.0**-16, 2.0**-16, facets=True),
+    "offset": Arithmetic(2.0**-23, 2.0**-10, 2.0**-13, facets=True),
 }
 """By the names that `warnings.arithmetic_of` gives them."""
 
@@ -216,10 +218,11 @@ class _Explainer:
         self._etas = needs[0].etas
         self._cutoff = settings[0].cutoff
         self._same_limits = len({(n.max_depth, each.cutoff) for n, each in zip(needs, settings, strict=True)}) == 1
-        self._unit, self._hidden, self._moved = ARITHMETICS[arithmetic]
+        self._unit, self._hidden, self._moved, facets = ARITHMETICS[arithmetic]
         self._rounding = ROUNDINGS * self._unit
         self._extents = [_extent(o.shape) for o in scene.objects]
         self._deviations: list[float] = [0.0] * len(scene.objects)
+        self._tilts: dict[tuple[int, int], float] = {}
         if self._moved:
             from converter.to_mitsuba.surfaces import shapes
 
@@ -228,6 +231,8 @@ class _Explainer:
                     # Also of what is cut off far away: Embree's numbers are as large as a triangle's.
                     mesh = shape["mesh"]
                     self._deviations[i] = mesh.deviation + self._unit / 2 * float(np.abs(mesh.vertices).max())
+                    if facets:
+                        self._tilts |= {(i, plane): tilt for plane, tilt in _tilts(scene.objects[i].shape, mesh)}
 
     def pixel(self, x: int, y: int, pairs: Sequence[Pair]) -> Explained:
         """The class of a pixel: that of the difference that changes it most, or of one that nothing explains."""
@@ -330,7 +335,8 @@ class _Explainer:
             # How far the light is above the horizon of the surface, which turns with the point.
             turn = 1 + self._curvature(index) * distance
             rounded = self._rounding * distance
-            margins = [_Margin(abs(one["cosine"]) * distance, turn * inherited, turn * own + rounded)]
+            tilted = self._tilt(hits[0]) * distance
+            margins = [_Margin(abs(one["cosine"]) * distance, turn * inherited, turn * own + rounded + tilted)]
             for blocker in {light["shadowed_by"] for light in (one, other)} - {None}:
                 shape = self._shape(blocker)
                 reach = _reach(hits[0])
@@ -366,6 +372,10 @@ class _Explainer:
         shape = self._shape(index)
         return 1 / shape.radius if isinstance(shape, Sphere) else 0.0
 
+    def _tilt(self, hit: Ray) -> float:
+        """By what angle the normal at a hit may be off, where it is a triangle's."""
+        return self._tilts.get((hit["object"], hit["plane"]), 0.0)
+
     def _refraction(self, ray: Ray, hit: Ray) -> tuple[float, float]:
         """The cosine before a surface, and the index on the ray's side over that behind."""
         eta = self._etas[self._scene.objects[hit["object"]].finish]
@@ -374,7 +384,7 @@ class _Explainer:
 
     def _bounced(self, ray: Ray, hit: Ray, child: Ray, direction: float, off: float) -> _Error:
         """The error of a ray that leaves a surface where its origin is off by `off`, one of `direction` coming in."""
-        turned = self._curvature(hit["object"]) * off + self._rounding
+        turned = self._curvature(hit["object"]) * off + self._tilt(hit) + self._rounding
         off += self._moved * _reach(hit)
         if child["kind"] == "reflected" or hit["total_reflection"]:
             return _Error(off, direction + 2 * turned + self._rounding)
@@ -382,6 +392,19 @@ class _Explainer:
         behind = max(abs(float(np.dot(child["direction"], hit["normal"]))), 1e-12)
         bent = eta * (direction + turned)
         return _Error(off, min(bent / behind, math.sqrt(2 * bent)) + turned + self._rounding)
+
+
+def _tilts(shape: Shape, mesh: "PolyhedronMesh") -> Iterator[tuple[int, float]]:
+    """For each plane that has triangles the largest angle between it and one of those, made of float32 corners."""
+    assert isinstance(shape, Polyhedron)
+    corners = mesh.vertices.astype(np.float32).astype(np.float64)[mesh.triangles]
+    across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals = np.array([plane[:3] for plane in shape.planes])[mesh.planes]
+    with np.errstate(invalid="ignore", divide="ignore"):
+        sines = np.linalg.norm(np.cross(across, normals), axis=1)
+        angles = np.arctan2(sines, np.einsum("ij,ij->i", across, normals))
+    for plane in np.unique(mesh.planes):
+        yield int(plane), float(angles[mesh.planes == plane].max())
 
 
 def _reach(hit: Ray) -> float:
