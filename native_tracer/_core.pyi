@@ -128,6 +128,9 @@ def threaded_bvh(low: Buffer, high: Buffer) -> tuple[memoryview[float], memoryvi
 def surfaces_at(point: _Triple, rows: Buffer, round: Buffer) -> list[int]:
     """Which surfaces a point lies on; see `native_tracer.incidence`."""
 
+def within(point: _Triple, planes: Buffer) -> bool:
+    """Whether a point lies in a body or on its surface; see `native_tracer.incidence`."""
+
 def halfspace_bodies(coefficients: Buffer, offsets: Buffer) -> list[tuple[Any, ...]]:
     """What is known of each intersection of half-spaces; see `native_tracer.halfspaces`."""
 

@@ -1,7 +1,7 @@
 """Points that lie on surfaces: the eye on a floor, a lamp on a ceiling."""
 
 import numpy as np
-from numpy.typing import ArrayLike
+from numpy.typing import ArrayLike, NDArray
 
 from native_tracer import _core
 
@@ -20,7 +20,28 @@ def surfaces_at(point: ArrayLike, rows: ArrayLike, round: ArrayLike) -> list[int
         TypeError: the shapes are wrong.
 
     """
-    x, y, z = np.asarray(point, dtype=np.float64).tolist()
-    numbers = np.ascontiguousarray(rows, dtype=np.float64)
     flags = np.ascontiguousarray(round, dtype=np.bool_).view(np.uint8)
-    return list(_core.surfaces_at((x, y, z), numbers.data, flags.data))
+    return list(_core.surfaces_at(_triple(point), _rows(rows).data, flags.data))
+
+
+def within(point: ArrayLike, planes: ArrayLike) -> bool:
+    """Whether a point lies in all half-spaces a x + b y + c z + d <= 0 or on their borders.
+
+    Args:
+        point: (3,) numbers.
+        planes: (n, 4) numbers, normals of any length.
+
+    Raises:
+        TypeError: the shapes are wrong.
+
+    """
+    return _core.within(_triple(point), _rows(planes).data)
+
+
+def _triple(point: ArrayLike) -> tuple[float, float, float]:
+    x, y, z = np.asarray(point, dtype=np.float64).tolist()
+    return x, y, z
+
+
+def _rows(rows: ArrayLike) -> NDArray[np.float64]:
+    return np.ascontiguousarray(rows, dtype=np.float64)

@@ -112,6 +112,19 @@ def test_a_ray_from_an_eye_on_a_glass_ball_is_bent_where_it_leaves_it_and_not_be
     assert np.allclose(drawn(made, method, replace(SETTINGS, max_depth=4)), 0.45)
 
 
+@pytest.mark.parametrize("method", EXACT)
+def test_an_eye_in_the_plane_of_a_face_beside_it_sees_the_body(mi, method):
+    """The face is seen from its edge, and the ones next to it as ever."""
+    view = camera((2.1, 0.3, 6.1), (1.1, 0.0, 0.0), 40.0)
+    picture = drawn(scene(view, [(box((0.1, -1.0, -1.0), (2.1, 1.0, 1.0)), RED, GLOW)]), method)
+    beside = drawn(
+        scene(replace(view, eye=(2.1 - 1e-9, 0.3, 6.1)), [(box((0.1, -1.0, -1.0), (2.1, 1.0, 1.0)), RED, GLOW)]),
+        "native",
+    )
+    assert 0.1 < (picture == np.float32(RED)).all(axis=2).mean() < 0.9
+    assert (picture == beside).all()
+
+
 # ---- Lights
 
 SHINY = Finish(0.2, 0.5, 0.25, 0.0, 0.0, 0.0, 0.0)

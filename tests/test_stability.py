@@ -1,6 +1,7 @@
 """The stability study: where a method holds, the worker that draws, the table, the figure and the page."""
 
 import json
+import math
 import os
 import time
 from dataclasses import replace
@@ -20,7 +21,7 @@ from converter.scene.geometry import check_geometry
 from converter.scene.needs import scene_needs
 from converter.studies import worker as worker_module
 from converter.studies.families import FAMILIES
-from converter.studies.families.scenes import GLOW, WHITE, camera, scene, settings, sphere
+from converter.studies.families.scenes import GLOW, WHITE, camera, scaled, scene, settings, sphere
 from converter.studies.family import Case, Family
 from converter.studies.stability import TRUTH, easiest, study_family
 from converter.studies.stability_figure import draw_stability, lines, spread, stability_figure
@@ -248,6 +249,30 @@ def test_mitsuba_in_double_holds_for_three_decades_at_least(made, intersections)
         if (decades or value == 0) and value <= CHAOTIC.get(made.name, value):
             case = made.case(value)
             assert wrong_share(case, renderer) <= case.allowed, f"{made.name} {value:g}"
+
+
+def sized(case, power):
+    """A case 2^power times as large, which is the same to the last bit, with its truth."""
+    truth = case.truth
+    if truth is None:
+        truth = np.asarray(NativeRenderer("long double").render(case.scene, case.settings).pixels)
+    return replace(case, scene=scaled(case.scene, 2.0**power), truth=truth)
+
+
+@pytest.mark.parametrize("made", FAMILIES.values(), ids=list(FAMILIES))
+def test_a_family_holds_at_every_size(mi, made):
+    """The easiest scene, and the hardest ones that have to hold: native from 1e-6 to 1e6, Mitsuba from 1e-3 to 1e3."""
+    start = easiest(made, made.values)
+    for renderer, decades, powers in (
+        (NativeRenderer(), 1e6, (-20, 20)),
+        (MitsubaRenderer("llvm_ad_rgb"), 1e3, (-10, 10)),
+    ):
+        last = CHAOTIC.get(made.name, math.inf)
+        held = [v for v in made.values if made.values[start] / decades <= v <= min(made.values[start] * decades, last)]
+        for value in {made.values[start], held[0], held[-1]}:
+            for power in powers:
+                case = sized(made.case(value), power)
+                assert wrong_share(case, renderer) <= case.allowed, f"{made.name} {value:g} times 2^{power}"
 
 
 # ---- The figure and the page

@@ -15,7 +15,7 @@ from numpy.typing import NDArray
 from mitsuba_plugins.integrators.columns import column
 from mitsuba_plugins.integrators.geometry import Surface
 from mitsuba_plugins.integrators.rays import Ray, Real
-from native_tracer.incidence import surfaces_at
+from native_tracer.incidence import surfaces_at, within
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -52,6 +52,10 @@ class Contacts:
             x, y, z = (normal / np.linalg.norm(normal)).tolist()
             found.append(Contact(int(self._object[record]), record, (x, y, z), float(row[3]) if is_round else 0.0))
         return found
+
+    def is_on_body(self, point: Numbers, contact: Contact) -> bool:
+        """Whether a point is on the body, and not in a face's plane beside the face."""
+        return contact.radius > 0 or within(point, self._rows[self._object == contact.object])
 
 
 class LightContacts:
@@ -110,7 +114,7 @@ class EyeContact:
     """What rays from the eye start on, as rays that leave a surface do. Of several objects it is the first."""
 
     def __init__(self, types: Real, contacts: Contacts, eye: Numbers) -> None:
-        found = contacts.of(eye)
+        found = [contact for contact in contacts.of(eye) if contacts.is_on_body(eye, contact)]
         self._contacts = [contact for contact in found if contact.object == found[0].object]
         self._normals = [types.Vector3(*contact.normal) for contact in self._contacts]
         dr.make_opaque(self._normals)

@@ -5,6 +5,7 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
 #include <cstddef>
 #include <cstdint>
 #include <stdexcept>
@@ -38,9 +39,19 @@ std::vector<std::size_t> surfaces_at(const whitted::Triple& point, const Rows& r
     return found;
 }
 
+bool within(const whitted::Triple& point, const Rows& rows) {
+    std::vector<whitted::Quadruple> planes(rows.shape(0));
+    for (std::size_t i = 0; i < planes.size(); ++i) {
+        std::copy_n(rows.data() + 4 * i, 4, planes[i].begin());
+    }
+    return whitted::lies_within(planes, point);
+}
+
 }  // namespace
 
 void bind_incidence(nb::module_& module) {
     module.def("surfaces_at", &surfaces_at, "point"_a, "rows"_a, "round"_a,
                "Which surfaces a point lies on; see native_tracer.incidence.");
+    module.def("within", &within, "point"_a, "planes"_a,
+               "Whether a point lies in a body or on its surface; see native_tracer.incidence.");
 }

@@ -1,5 +1,6 @@
 #include "incidence.h"
 
+#include <algorithm>
 #include <cmath>
 #include <cstddef>
 #include <limits>
@@ -14,6 +15,22 @@ constexpr Real rounding = std::numeric_limits<double>::epsilon() / 2;
 
 Real length(const Triple& v) { return std::hypot(Real(v[0]), Real(v[1]), Real(v[2])); }
 
+// Of a point above a plane, times the length of its normal, and how far that may be off.
+struct Height {
+    Real value, error;
+};
+
+Height height_above(const Quadruple& plane, const Triple& point) {
+    Real value = plane[3];
+    Real sum = std::abs(value);
+    for (std::size_t axis = 0; axis < 3; ++axis) {
+        const Real product = Real(plane[axis]) * point[axis];
+        value += product;
+        sum += 2 * std::abs(product);  // both of its factors are rounded
+    }
+    return {value, rounding * sum};
+}
+
 }  // namespace
 
 bool lies_on(const SphereDescription& sphere, const Triple& point) {
@@ -24,14 +41,15 @@ bool lies_on(const SphereDescription& sphere, const Triple& point) {
 }
 
 bool lies_on(const Quadruple& plane, const Triple& point) {
-    Real height = plane[3];
-    Real error = std::abs(height);
-    for (std::size_t axis = 0; axis < 3; ++axis) {
-        const Real product = Real(plane[axis]) * point[axis];
-        height += product;
-        error += 2 * std::abs(product);  // both of its factors are rounded
-    }
-    return std::abs(height) <= rounding * error;
+    const Height height = height_above(plane, point);
+    return std::abs(height.value) <= height.error;
+}
+
+bool lies_within(const std::vector<Quadruple>& planes, const Triple& point) {
+    return std::all_of(planes.begin(), planes.end(), [&](const Quadruple& plane) {
+        const Height height = height_above(plane, point);
+        return height.value <= height.error;
+    });
 }
 
 }  // namespace whitted

@@ -5,6 +5,8 @@
 
 #pragma once
 
+#include <vector>
+
 #include "description.h"
 
 namespace whitted {
@@ -13,5 +15,8 @@ namespace whitted {
 // do: each may be wrong by 2^-53 of itself.
 bool lies_on(const SphereDescription& sphere, const Triple& point);
 bool lies_on(const Quadruple& plane, const Triple& point);
+
+// Whether the point lies in the half-spaces of all planes, or on their borders.
+bool lies_within(const std::vector<Quadruple>& planes, const Triple& point);
 
 }  // namespace whitted

@@ -296,7 +296,10 @@ Scene<Real>::Scene(const SceneDescription& description, const SearchPlan& plan)
     };
     eye_view = view_from(vector_of<Real>(description.camera.eye));
     for (const Contact<Real>& contact : contacts_of(description, description.camera.eye)) {
-        if (eye_contact.object < 0) {
+        // The eye may also lie in a face's plane beside the face.
+        const auto* polyhedron =
+            std::get_if<PolyhedronDescription>(&description.objects[static_cast<std::size_t>(contact.object)].shape);
+        if (eye_contact.object < 0 && (!polyhedron || lies_within(polyhedron->planes, description.camera.eye))) {
             eye_contact.object = contact.object;
             eye_contact.patch = contact.patch;
         }
