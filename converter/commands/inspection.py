@@ -52,13 +52,13 @@ def inspect_scene(scene: Scene, settings: Settings) -> dict[str, Any]:
 
 def _warnings(scene: Scene, settings: Settings) -> dict[str, tuple[str, ...]]:
     """Where methods are known to fail with the scene, by their names; a method for each arithmetic."""
+    from converter.regions.warnings import region_warnings
     from converter.renderers.methods import METHODS, Method
-    from converter.scene.warnings import arithmetic_of, method_warnings
 
     methods: dict[str | None, Method] = {}
     for method in METHODS.values():
-        methods.setdefault(arithmetic_of(method), method)
-    found = {method.name: method_warnings(scene, settings, method) for method in methods.values()}
+        methods.setdefault(method.arithmetic, method)
+    found = {method.name: region_warnings(scene, settings, method) for method in methods.values()}
     return {name: warnings for name, warnings in found.items() if warnings}
 
 

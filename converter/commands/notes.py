@@ -35,7 +35,7 @@ def load_with_notices(
         for notice in scene_notices(scene, settings):
             say(f"note: {notice}")
         if method is not None:
-            from converter.scene.warnings import method_warnings
+            from converter.regions.warnings import method_warnings
 
             for warning in method_warnings(scene, settings, method):
                 say(f"warning: {warning}")

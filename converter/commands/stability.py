@@ -161,4 +161,4 @@ def _print(studies: "list[FamilyStudy]", missing: list[str]) -> None:
     from converter.studies import stability_report as report
 
     print_table(report.table_rows(studies), report.table_header(studies))
-    print("\n".join(["", report.LEGEND, *report.failures(studies), *missing]))
+    print("\n".join(["", report.LEGEND, *report.silences(studies), *report.failures(studies), *missing]))

@@ -34,7 +34,6 @@ from converter.compare.rays import Pair, Ray, pair_trees
 from converter.scene.model import Polyhedron, Scene, Shape, Sphere
 from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings
-from converter.scene.warnings import arithmetic_of
 
 if TYPE_CHECKING:
     from converter.renderers.methods import Method
@@ -84,7 +83,7 @@ ARITHMETICS = {
     "ulp": Arithmetic(2.0**-23, 2.0**-16, 2.0**-16, facets=True),
     "offset": Arithmetic(2.0**-23, 2.0**-10, 2.0**-13, facets=True),
 }
-"""By the names that `warnings.arithmetic_of` gives them."""
+"""By the names that `Method.arithmetic` gives them."""
 
 
 Trace = Callable[[Sequence[tuple[int, int]]], list[dict[str, Any]]]
@@ -130,7 +129,7 @@ class Explanation:
 
 def less_exact(one: "Method", other: "Method") -> str | None:
     """Whose arithmetic to measure by, a key of `ARITHMETICS`; None where one of them does not tell its rays."""
-    found = [arithmetic_of(method) for method in (one, other)]
+    found = [method.arithmetic for method in (one, other)]
     known = [kind for kind in found if kind is not None]
     return max(known, key=lambda kind: ARITHMETICS[kind].hidden) if len(known) == len(found) else None
 

@@ -12,6 +12,9 @@ from converter.scene.model import Polyhedron, Scene
 from converter.scene.settings import Settings
 
 Family = Literal["native", "mitsuba", "povray"]
+Arithmetic = Literal["double", "float", "mesh", "offset", "ulp"]
+"""Double throughout; single precision throughout; Embree's choice among exact surfaces; Embree's word, with rays moved
+off by Mitsuba's offset, or by units in the last place."""
 
 MOST_COMPILED = 128
 """Surfaces up to which a method that compiles each by itself is tried."""
@@ -56,6 +59,17 @@ class Method:
     def settings(self, given: Settings) -> Settings:
         """`given` with what the method changes."""
         return replace(given, **self.changes)
+
+    @property
+    def arithmetic(self) -> Arithmetic | None:
+        """What decides where it fails; None for POV-Ray."""
+        if self.family == "povray":
+            return None
+        kind: Arithmetic
+        for kind in ("mesh", "offset", "ulp"):
+            if self.options.get("intersections") == kind:
+                return kind
+        return "float" if self.options.get("precision") == "float" else "double"
 
     def missing(self) -> str | None:
         """Why the method cannot run on this machine, as far as can be told without running it; None if it can."""

@@ -11,6 +11,11 @@ SHOWN_WIDTH = 100
 """Characters of a line that are shown; a scene may be written on one line of a megabyte."""
 
 
+def place(file: Path | None, line: int) -> str:
+    """`file:line`; line 0 is the file as a whole, and None a scene that came from none."""
+    return f"{file or 'scene'}{f':{line}' if line else ''}"
+
+
 @dataclass(frozen=True, slots=True)
 class Problem:
     """One thing that is wrong, and where.
@@ -30,10 +35,9 @@ class Problem:
 
     def __str__(self) -> str:
         """`file:line:column: message`, the line itself, and a caret below the column."""
-        name = "scene" if self.file is None else str(self.file)
         if self.line == 0:
-            return f"{name}: {self.message}"
-        told = f"{name}:{self.line}:{self.column}: {self.message}"
+            return f"{place(self.file, 0)}: {self.message}"
+        told = f"{place(self.file, self.line)}:{self.column}: {self.message}"
         if not self.source_line.strip():
             return told
         shown, caret = _window(self.source_line.expandtabs(TAB).rstrip(), self.column - 1)

@@ -2,13 +2,15 @@
 
 import math
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Protocol
 
 import numpy as np
 
 from converter.compare.metrics import Difference, Pixels, compare_pixels
+from converter.regions.warnings import method_warnings
 from converter.renderers.methods import Method
+from converter.scene.geometry import check_geometry
 from converter.scene.model import Scene
 from converter.scene.settings import Settings
 from converter.studies.family import Case, Family, Truth
@@ -18,6 +20,8 @@ LONGEST = 20.0
 """Seconds after which a picture is given up, and its method for the harder values of the family."""
 LONGEST_TRUTH = 120.0
 """The same of a truth that is drawn."""
+FEW = 0.01
+"""Share of the pixels up to which wrong ones are single ones, at edges: what a method's description tells of."""
 PLAIN = 0.05
 """Share of wrong pixels from which on anyone sees that something is wrong."""
 TRUTH = "native-long-double"
@@ -44,6 +48,7 @@ class Outcome:
         difference: of its picture from the truth; None if there is no picture.
         failure: why there is none.
         allowed: share of the pixels that may differ.
+        warned: whether someone who draws the scene by the method is told that it may fail, or the scene is refused.
         pixels, truth: of the first picture that fails plainly, and where none does of the first that fails, else None.
 
     """
@@ -52,6 +57,7 @@ class Outcome:
     difference: Difference | None
     failure: str | None
     allowed: float
+    warned: bool = False
     pixels: Pixels | None = None
     truth: Truth | None = None
 
@@ -64,6 +70,11 @@ class Outcome:
     def holds(self) -> bool:
         """Whether there is a picture, and it is right."""
         return self.difference is not None and self.share <= self.allowed
+
+    @property
+    def silent(self) -> bool:
+        """Whether more than single pixels are wrong, and nothing tells so."""
+        return not self.warned and self.difference is not None and self.share > self.allowed + FEW
 
 
 @dataclass(frozen=True, slots=True)
@@ -133,6 +144,7 @@ def study_family(
         value, before = family.values[index], index < start
         case = family.case(value)
         tell(f"{family.name} {value:.3g}", done / len(order))
+        refused = bool(check_geometry(case.scene))
         try:
             truth = _truth(case, worker)
         except DrawingFailed as error:
@@ -140,17 +152,18 @@ def study_family(
             continue
         for k, method in enumerate(methods):
             tell(f"{family.name} {value:.3g}: {method.name}", (done + k / len(methods)) / len(order))
+            warned = refused or bool(method_warnings(case.scene, case.settings, method))
             try:
                 if (method, before) in given_up:
                     raise DrawingFailed("not asked, for an easier one took too long")
                 pixels = _draw(case, method, worker, variant)
             except DrawingFailed as error:
-                outcome = Outcome(value, None, str(error), case.allowed)
+                outcome = Outcome(value, None, str(error), case.allowed, warned)
                 if isinstance(error, TookTooLong):
                     given_up.add((method, before))
             else:
                 difference = compare_pixels(truth.astype(np.float32), pixels)
-                outcome = Outcome(value, difference, None, case.allowed, pixels, truth)
+                outcome = Outcome(value, difference, None, case.allowed, warned, pixels, truth)
             outcomes[method.name][index] = outcome
     ordered = {name: tuple(found[i] for i in sorted(found)) for name, found in outcomes.items()}
     study = FamilyStudy(family, ordered, broken)
@@ -176,6 +189,4 @@ def _slim(study: FamilyStudy, method: str) -> tuple[Outcome, ...]:
     start = easiest(study.family, [outcome.value for outcome in outcomes])
     wrong = [i for i, o in enumerate(outcomes) if o.pixels is not None and not o.holds]
     kept = min(wrong, key=lambda i: (outcomes[i].share < PLAIN, abs(i - start)), default=None)
-    return tuple(
-        o if i == kept else Outcome(o.value, o.difference, o.failure, o.allowed) for i, o in enumerate(outcomes)
-    )
+    return tuple(o if i == kept else replace(o, pixels=None, truth=None) for i, o in enumerate(outcomes))

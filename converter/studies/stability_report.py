@@ -5,7 +5,7 @@ from dataclasses import asdict
 from typing import Any
 
 from converter.studies.machine import machine, versions
-from converter.studies.stability import FamilyStudy, Outcome
+from converter.studies.stability import FEW, FamilyStudy, Outcome
 
 LEGEND = (
     "the last value that holds, from the easy ones on: no pixel (of those that may not) is off by more than 1/255\n"
@@ -59,6 +59,17 @@ def failures(studies: Sequence[FamilyStudy]) -> list[str]:
     ]
 
 
+def silences(studies: Sequence[FamilyStudy]) -> list[str]:
+    """What is told of failures that come without a warning: a line for every family and method that has some."""
+    found = [
+        f"no warning: {study.family.name}, {method} at {', '.join(number(o.value) for o in outcomes if o.silent)}"
+        for study in studies
+        for method, outcomes in study.outcomes.items()
+        if any(outcome.silent for outcome in outcomes)
+    ]
+    return found or [f"wherever a method gets more than {FEW:.0%} of the pixels wrong, a warning says so beforehand"]
+
+
 def to_json(studies: Sequence[FamilyStudy]) -> dict[str, Any]:
     """Every figure, and what it comes from."""
     return {
@@ -91,6 +102,7 @@ def _record(outcome: Outcome) -> dict[str, Any]:
     return {
         "value": outcome.value,
         "holds": outcome.holds,
+        "warned": outcome.warned,
         "share": outcome.share,
         "allowed": outcome.allowed,
         "failure": outcome.failure,

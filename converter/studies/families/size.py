@@ -113,7 +113,7 @@ FAMILIES = (
         "The same still life, moved away from the origin with its camera and lights by numbers that doubles hold: "
         "the picture stays.",
         "distance from the origin, where the scene is about 8 wide",
-        tuple(10.0**power for power in range(13)),
+        tuple(10.0**power for power in range(14)),
         _position,
     ),
     Family(
