@@ -292,8 +292,6 @@ def test_every_region_is_one_in_which_methods_fail(mi, region):
     for arithmetic in region.limits:
         method = (USUAL | OFF)[arithmetic]
         failing = [
-            family
-            for family in region.families
-            if any(o.warned and not o.holds for o in outcomes(family, method))
+            family for family in region.families if any(o.warned and not o.holds for o in outcomes(family, method))
         ]
         assert failing, arithmetic

@@ -26,7 +26,8 @@ from converter.studies.family import Case, Family
 from converter.studies.stability import TRUTH, easiest, study_family
 from converter.studies.stability_figure import draw_stability, lines, spread, stability_figure
 from converter.studies.stability_page import write_page
-from converter.studies.stability_report import failures, number, table_header, table_rows, to_json
+from converter.studies.stability_pictures import SEEN
+from converter.studies.stability_report import failures, number, silences, table_header, table_rows, to_json
 from converter.studies.svg import compact
 from converter.studies.worker import DrawingFailed, TookTooLong, Worker
 
@@ -370,13 +371,40 @@ def test_a_compact_picture_has_its_styles_as_classes_and_no_groups_that_say_noth
 
 def test_the_page_has_chart_table_and_pictures(tmp_path):
     studies = made_studies()
-    gap = replace(studies[1], family=replace(studies[1].family, name="position"))
-    write_page([*studies, gap], tmp_path)
+    position = replace(studies[1], family=replace(studies[1].family, name="position"))
+    write_page([*studies, position], tmp_path)
     page = (tmp_path / "stability.md").read_text()
     assert "| made-up-0 | all | 10 | 10 |" in page
     assert "](stability.svg)" in page
-    assert "](stability-position.png)" in page
-    assert {file.name for file in tmp_path.iterdir()} == {"stability.md", "stability.svg", "stability-position.png"}
+    assert "](stability-failures.png)" in page
+    assert "| position | 10 | native-float | mirrors and glass show the sky" in page
+    assert {file.name for file in tmp_path.iterdir()} == {"stability.md", "stability.svg", "stability-failures.png"}
+
+
+def test_a_page_on_what_nothing_fails_in_has_no_pictures(tmp_path):
+    write_page([study_family(family(), [NATIVE], Fake(0))], tmp_path)
+    assert {file.name for file in tmp_path.iterdir()} == {"stability.md", "stability.svg"}
+    assert "stability-failures" not in (tmp_path / "stability.md").read_text()
+
+
+def test_failures_that_come_without_a_warning_are_told():
+    fake = Fake(2, above=10.0)
+    studies = [study_family(family(), [NATIVE, FLOAT], fake)]
+    assert silences(studies) == ["no warning: made-up, native-float at 10, 100, 1000"]
+    assert to_json(studies)["families"][0]["methods"][1]["outcomes"][1]["warned"] is False
+    few = [study_family(family(allowed=0.25), [NATIVE, FLOAT], fake)]
+    assert silences(few) == ["wherever a method gets more than 1% of the pixels wrong, a warning says so beforehand"]
+
+
+def test_the_page_of_the_project_shows_every_failure():
+    """docs/stability.md: each family of the table in which some method fails is among the pictures, and no other."""
+    page = (Path(__file__).parents[1] / "docs" / "stability.md").read_text()
+    rows = [[cell.strip() for cell in line.split("|")[1:-1]] for line in page.splitlines() if line.startswith("| ")]
+    table = [row for row in rows if row[0] in FAMILIES and len(row) > 4]
+    shown = [row[0] for row in rows if row[0] in SEEN and len(row) == 4]
+    assert [row[0] for row in table] == list(FAMILIES)
+    # Where a method is not for a scene there is no picture of it.
+    assert shown == [row[0] for row in table if set(row[1:]) != {"all"} and row[0] != "faces"]
 
 
 # ---- The command

@@ -22,7 +22,7 @@ LONGEST_TRUTH = 120.0
 """The same of a truth that is drawn."""
 FEW = 0.01
 """Share of the pixels up to which wrong ones are single ones, at edges: what a method's description tells of."""
-PLAIN = 0.05
+PLAIN = 0.2
 """Share of wrong pixels from which on anyone sees that something is wrong."""
 TRUTH = "native-long-double"
 """The method that draws the truths for which there is no closed form."""
@@ -184,9 +184,11 @@ def _draw(case: Case, method: Method, worker: Draws, variant: str | None) -> Pix
 
 
 def _slim(study: FamilyStudy, method: str) -> tuple[Outcome, ...]:
-    """A method's outcomes, of which only the one that shows best how it fails keeps its picture."""
+    """A method's outcomes, of which only the one that shows best how it fails keeps its picture: the first plain one,
+    or else the worst.
+    """
     outcomes = study.outcomes[method]
     start = easiest(study.family, [outcome.value for outcome in outcomes])
     wrong = [i for i, o in enumerate(outcomes) if o.pixels is not None and not o.holds]
-    kept = min(wrong, key=lambda i: (outcomes[i].share < PLAIN, abs(i - start)), default=None)
+    kept = min(wrong, key=lambda i: (-min(outcomes[i].share, PLAIN), abs(i - start)), default=None)
     return tuple(o if i == kept else replace(o, pixels=None, truth=None) for i, o in enumerate(outcomes))
