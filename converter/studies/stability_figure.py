@@ -101,7 +101,7 @@ def stability_figure(studies: Sequence[FamilyStudy]) -> "Figure":
 def _draw_panel(axes: "Axes", study: FamilyStudy, scale: ErrorScale) -> None:
     family, drawn = study.family, lines(study)
     axes.set_title(family.name, fontsize=8, fontweight="bold", loc="left", pad=25)
-    about = textwrap.fill(family.about, 88)
+    about = textwrap.fill(family.about, 68)
     axes.text(0, 1.03, about, fontsize=5.5, transform=axes.transAxes, va="bottom", color="0.2")
     places = _places(family.values)
     _scale_axes(axes, study, scale, places)
