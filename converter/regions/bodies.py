@@ -17,16 +17,14 @@ def _object(s: Situation, index: int, text: str) -> Finding:
 
 
 def _far_from_origin(s: Situation, limit: float) -> Iterator[Finding]:
-    with np.errstate(divide="ignore", over="ignore"):
-        shares = s.bodies.radius / np.abs(s.bodies.center).max(axis=1, initial=0.0)
+    shares = s.bodies.radius / np.abs(s.bodies.center).max(axis=1, initial=0.0)
     for k, more in worst(shares, limit):
         text = f"is {1 / shares[k]:.2g} of its radii from the origin (more than {1 / limit:.2g}{more})"
         yield _object(s, s.bodies.object[k], text)
 
 
 def _far_from_camera(s: Situation, limit: float) -> Iterator[Finding]:
-    with np.errstate(divide="ignore", over="ignore"):
-        shares = s.bodies.radius / np.linalg.norm(s.bodies.center - s.eye, axis=1)
+    shares = s.bodies.radius / np.linalg.norm(s.bodies.center - s.eye, axis=1)
     for k, more in worst(shares, limit):
         text = f"is {1 / shares[k]:.2g} of its radii from the camera (more than {1 / limit:.2g}{more})"
         yield _object(s, s.bodies.object[k], text)
@@ -39,21 +37,18 @@ def _beside_smaller(s: Situation, limit: float) -> Iterator[Finding]:
         return
     center, radius, index = s.bodies.center[balls], s.bodies.radius[balls], s.bodies.object[balls]
     small = int(radius.argmin())
-    with np.errstate(over="ignore"):
-        apart = np.linalg.norm(center - center[small], axis=1) >= radius
+    apart = np.linalg.norm(center - center[small], axis=1) >= radius
     for k, more in worst(np.where(apart, radius[small] / radius, np.inf), limit):
         text = f"has {radius[k] / radius[small]:.2g} times the radius of object {index[small]}"
         yield _object(s, index[k], f"{text} (more than {1 / limit:.2g}{more})")
 
 
 def _large(s: Situation, limit: float) -> Iterator[Finding]:
-    with np.errstate(over="ignore"):
-        bodies = np.abs(s.bodies.center).max(axis=1, initial=0.0) + s.bodies.radius
+    bodies = np.abs(s.bodies.center).max(axis=1, initial=0.0) + s.bodies.radius
     far = np.zeros(len(s.scene.objects))
     np.maximum.at(far, s.bodies.object, bodies)
     np.maximum.at(far, s.planes.object, np.abs(s.planes.offset))
-    with np.errstate(divide="ignore"):
-        shares = 1 / far
+    shares = 1 / far
     for i, more in worst(shares, limit):
         yield _object(s, i, f"is {far[i]:.2g} from the origin (more than {1 / limit:.2g}{more})")
 

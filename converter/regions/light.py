@@ -45,8 +45,7 @@ def _near_balls(s: Situation, limit: float) -> Iterator[Finding]:
     center, radius = s.bodies.center[balls], s.bodies.radius[balls]
     for k, source in enumerate(s.scene.lights if s.needs.lit else ()):
         place = np.array(source.position)
-        with np.errstate(over="ignore"):
-            shares = np.abs(np.linalg.norm(center - place, axis=1) - radius) / radius
+        shares = np.abs(np.linalg.norm(center - place, axis=1) - radius) / radius
         rows = np.column_stack([center, radius])
         near = [i for i in np.flatnonzero(shares < limit) if not surfaces_at(place, rows[[i]], [True])]
         if near:

@@ -30,8 +30,7 @@ def _fine_patterns(s: Situation, limit: float) -> Iterator[Finding]:
     for i, o in enumerate(s.scene.objects):
         pigment = s.scene.pigments[o.pigment]
         if isinstance(pigment, Checker):
-            with np.errstate(divide="ignore"):
-                shares[i] = pigment.size / _far_point(s, i).max()
+            shares[i] = pigment.size / _far_point(s, i).max()
         elif isinstance(pigment, Texmap):
             point = np.append(_far_point(s, i), 1.0)
             images = max(float(np.abs(row) @ point) for row in (pigment.p0, pigment.p1))

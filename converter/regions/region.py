@@ -25,7 +25,8 @@ class Region:
         families: of the stability study that lead into it; its limits lie between the last of their values that holds
             and the first at which more than single pixels are wrong.
         limits: for each arithmetic that fails there the smallest share that it can do with.
-        find: what of a scene is smaller than a limit: nothing, or the worst, with a word on how many others are.
+        find: what of a scene is smaller than a limit: nothing, or the worst, with a word on how many others are. It
+            runs with NumPy's errors ignored, for numbers may be as large as they like.
 
     """
 

@@ -82,6 +82,7 @@ class Situation:
         return bool(np.all((self.low[one] <= self.high[other] + room) & (self.low[other] <= self.high[one] + room)))
 
 
+@np.errstate(all="ignore")  # numbers may be as large as they like
 def situation_of(scene: Scene, settings: Settings) -> Situation:
     """Work it out."""
     needs = scene_needs(scene, settings)
@@ -94,9 +95,8 @@ def situation_of(scene: Scene, settings: Settings) -> Situation:
 
 
 def _bodies(scene: Scene, boxes: Floats, bounded: NDArray[np.bool_]) -> Bodies:
-    with np.errstate(over="ignore"):
-        center = boxes[:, 0] / 2 + boxes[:, 1] / 2
-        radius = np.linalg.norm(boxes[:, 1] / 2 - boxes[:, 0] / 2, axis=1)
+    center = boxes[:, 0] / 2 + boxes[:, 1] / 2
+    radius = np.linalg.norm(boxes[:, 1] / 2 - boxes[:, 0] / 2, axis=1)
     is_ball = np.zeros(len(scene.objects), dtype=np.bool_)
     for i, o in enumerate(scene.objects):
         if isinstance(o.shape, Sphere):
@@ -113,8 +113,7 @@ def _planes(scene: Scene, needs: SceneNeeds) -> Planes:
         for k in planes
     ]
     rows = np.array([row[2:] for row in kept], dtype=np.float64).reshape(-1, 4)
-    with np.errstate(under="ignore"):
-        rows = rows / np.abs(rows[:, :3]).max(axis=1, initial=0.0, keepdims=True)
-        rows = rows / np.linalg.norm(rows[:, :3], axis=1, keepdims=True)
+    rows = rows / np.abs(rows[:, :3]).max(axis=1, initial=0.0, keepdims=True)
+    rows = rows / np.linalg.norm(rows[:, :3], axis=1, keepdims=True)
     places = np.array([row[:2] for row in kept], dtype=np.intp).reshape(-1, 2)
     return Planes(places[:, 0], places[:, 1], rows[:, :3], rows[:, 3])

@@ -44,15 +44,13 @@ def _pixel_shares(s: Situation, polyhedra_only: bool = False) -> Floats:
     coordinate[bodies.object] = np.abs(bodies.center).max(axis=1, initial=0.0)
     # What has no bounds is as far away as where the picture shows it. The eye's own planes are where it does not.
     rays = _corner_rays(s)
-    with np.errstate(invalid="ignore", divide="ignore"):
-        t = -s.planes.heights(s.eye) / (rays @ s.planes.normal.T) * np.linalg.norm(rays, axis=1)[:, None]
+    t = -s.planes.heights(s.eye) / (rays @ s.planes.normal.T) * np.linalg.norm(rays, axis=1)[:, None]
     seen = np.where((t > _NOISE * s.reach) & np.isfinite(t), t, 0.0).max(axis=0, initial=0.0)
     bounded = np.array(s.needs.bounded, dtype=np.bool_)
     for i in np.flatnonzero(~bounded):
         own = s.planes.object == i
         distance[i], coordinate[i] = seen[own].max(initial=0.0), np.abs(s.planes.offset[own]).max(initial=0.0)
-    with np.errstate(invalid="ignore"):
-        shares = _pixel(s) * distance / (np.maximum(coordinate, s.reach) + distance)
+    shares = _pixel(s) * distance / (np.maximum(coordinate, s.reach) + distance)
     balls = bodies.object[bodies.is_ball]
     shares[balls] = np.inf if polyhedra_only else shares[balls]
     return np.where((distance > 0) & np.isfinite(distance), shares, np.inf)
@@ -118,10 +116,9 @@ def _nearness(s: Situation) -> Floats:
     shares = np.full(len(s.scene.objects), np.inf)
     planes, balls = s.planes, np.flatnonzero(s.bodies.is_ball)
     heights = np.abs(planes.heights(s.eye))
-    with np.errstate(invalid="ignore", divide="ignore"):
-        np.minimum.at(shares, planes.object, heights / np.maximum(np.abs(planes.offset), s.reach))
-        gaps = np.abs(np.linalg.norm(s.bodies.center[balls] - s.eye, axis=1) - s.bodies.radius[balls])
-        own = np.abs(s.bodies.center[balls]).max(axis=1, initial=0.0) + s.bodies.radius[balls]
+    np.minimum.at(shares, planes.object, heights / np.maximum(np.abs(planes.offset), s.reach))
+    gaps = np.abs(np.linalg.norm(s.bodies.center[balls] - s.eye, axis=1) - s.bodies.radius[balls])
+    own = np.abs(s.bodies.center[balls]).max(axis=1, initial=0.0) + s.bodies.radius[balls]
     shares[s.bodies.object[balls]] = gaps / np.maximum(own, s.reach)
     return shares
 

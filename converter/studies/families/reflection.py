@@ -245,8 +245,8 @@ FAMILIES: tuple[Family, ...] = (
     ),
     Family(
         "trapped-ray",
-        "Three mirror balls in a larger one: each bounce makes every error larger, until the last digit decides where a "
-        "ray goes.",
+        "Three mirror balls in a larger one: each bounce makes every error larger, until the last digit decides where "
+        "a ray goes.",
         "bounces",
         TRAPPED,
         _trapped,
