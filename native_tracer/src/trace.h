@@ -131,6 +131,8 @@ template <typename Real, typename Observer>
 Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const Hits<Real>& hits) const {
     const Vector<L> p = rays.origin + hits.t * rays.direction;
     const Mask<Real> hit = hits.object >= 0;
+    const L zero = Real(0);
+    const L one = Real(1);
 
     // Neighbouring rays mostly hit the same patch: then there is nothing to select.
     Surface<Real> result, another;
@@ -145,7 +147,16 @@ Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const H
         const Vector<L> anchor(patch.anchor);
         const L size = patch.size;
         if (patch.round) {
-            surface.outward = normalize(p - anchor);
+            const Vector<L> arm = p - anchor;
+            const L length2 = dot(arm, arm);
+            surface.outward = arm * (one / sqrt(length2));
+            // Of a sphere that is too small beside the distance travelled, the point is the centre itself, or so near
+            // that its square is 0. The normal may then be any that the ray can meet: it is taken along the ray.
+            const Mask<Real> lost = length2 <= zero;
+            if (any(lost)) [[unlikely]] {
+                const Vector<L> along = select(hits.inside, rays.direction, -rays.direction);
+                surface.outward = select(lost, along, surface.outward);
+            }
             surface.point = anchor + size * surface.outward;
         } else {
             surface.outward = anchor;
