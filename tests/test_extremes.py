@@ -1,5 +1,6 @@
 """Where roundings leave nothing of a number, both renderers draw the same, and no pixel is without one."""
 
+import math
 from dataclasses import replace
 
 import numpy as np
@@ -86,3 +87,27 @@ def test_a_light_at_the_hit_gives_no_light(renderer):
     made = scene(Camera(at, MIDDLE, (0.0, 1.0, 0.0), 40.0), [(sphere(at, 1.0), WHITE, GLOSSY)], [light(at)])
     made = replace(made, finishes=(replace(GLOSSY, kr=0.0),))
     assert middle_of(renderer, made) == pytest.approx([GLOSSY.ka] * 3)
+
+
+# ---- Directions ------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize("ior", [1e-40, 1e-162, 1e-300])
+def test_no_refraction_is_without_direction(double, ior):
+    """Rays that leave something so much denser are reflected, be they straight or slanted."""
+    for y in (0.0, 0.5):
+        view = camera((0.0, y, 5.0), (0.0, y, 0.0))
+        made = scene(view, [(sphere(MIDDLE, 1.0), WHITE, replace(GLASS, ior=ior))])
+        (ray,) = double.trace_pixel(made, SETTINGS, 1, 1)["rays"]
+        (within,) = ray["children"]
+        assert within["hit"]["total_reflection"]
+        while ray["children"]:
+            (ray,) = ray["children"]
+            assert math.hypot(*ray["direction"]) == pytest.approx(1)
+
+
+def test_a_view_across_all_numbers(double):
+    ends = (1.7e308, 1.7e308, 1.7e308), (-1.7e308, -1.7e308, -1.7e308)
+    made = scene(camera(*ends), [(sphere(MIDDLE, 1.0), WHITE, GLOSSY)])
+    (ray,) = double.trace_pixel(made, SETTINGS, 1, 1)["rays"]
+    assert ray["direction"] == pytest.approx([-1 / math.sqrt(3)] * 3)

@@ -271,10 +271,11 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
         const L eta = select(hits.inside, one / surface.eta, surface.eta);
         // 1 - eta^2 (1 - cosine^2), without the difference of nearly equal numbers where eta is nearly 1.
         const L cosine2 = (one - eta) * (one + eta) + eta * cosine * (eta * cosine);
-        const Mask<Real> total = cosine2 < zero;
-        const Vector<L> refracted =
-            normalize(eta * direction + (eta * cosine - sqrt(max(cosine2, zero))) * surface.normal);
-        bent = select(total, mirrored, refracted);
+        const Vector<L> refracted = eta * direction + (eta * cosine - sqrt(max(cosine2, zero))) * surface.normal;
+        const L length2 = dot(refracted, refracted);
+        // Of a ratio beyond all measure these may be no numbers, or 0.
+        const Mask<Real> total = ~((cosine2 >= zero) & (length2 > zero));
+        bent = select(total, mirrored, refracted * (one / sqrt(length2)));
         bent_inside = select(total, hits.inside, ~hits.inside);
         observer_.total_reflection(group, transmits & total);
     }
