@@ -149,6 +149,25 @@ def test_raytrace_writes_ppm_whatever_the_name(scene, tmp_path, name):
     assert sorted(file.name for file in tmp_path.iterdir()) == sorted([name, "small.in"])
 
 
+def test_raytrace_into_a_pipe(scene, tmp_path):
+    """It stays one: /dev/null would be no more than a picture otherwise."""
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    with os.fdopen(
+        os.open(pipe, os.O_RDWR), "rb", buffering=0
+    ) as reader:  # both ends, so that neither waits for the other
+        assert raytrace.main([str(scene), str(pipe), "4", "3"]) == 0
+        assert reader.read(11) == b"P6\n4 3\n255\n"
+    assert pipe.is_fifo()
+
+
+def test_raytrace_leaves_a_file_of_a_similar_name(scene, tmp_path):
+    other = tmp_path / ".picture.ppm"
+    other.write_text("another")
+    assert raytrace.main([str(scene), str(tmp_path / "picture"), "4", "3"]) == 0
+    assert other.read_text() == "another"
+
+
 def test_raytrace_goes_by_a_known_ending(scene, tmp_path):
     assert raytrace.main([str(scene), str(tmp_path / "a.png"), "4", "3"]) == 0
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")

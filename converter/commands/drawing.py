@@ -22,11 +22,13 @@ def draw(
     quiet: bool = False,
     keep_partial: bool = False,
     method: "Method | None" = None,
+    ending: str | None = None,
 ) -> tuple[Rendering, dict[str, float]]:
     """Draw a scene into an image file, which appears whole or not at all; return the picture and seconds by stage.
 
     With the `method` that the renderer belongs to, regions are named in which it is known to fail. With
-    `keep_partial`, Ctrl-C writes what is finished before `Interrupted` goes on to the caller.
+    `keep_partial`, Ctrl-C writes what is finished before `Interrupted` goes on to the caller. `ending` chooses the
+    image's format, if `out` does not.
 
     Raises:
         SceneError: the scene is no scene.
@@ -35,7 +37,7 @@ def draw(
         Interrupted: Ctrl-C while drawing.
 
     """
-    check_writable(out)
+    check_writable(out, ending)
     started = time.perf_counter()
     scene = load_with_notices(scene_file, settings, quiet, method)
     read = time.perf_counter()
@@ -44,14 +46,14 @@ def draw(
             rendering = renderer.render(scene, settings, progress)
         except Interrupted as stop:
             if keep_partial:
-                _write(stop.partial, out)
+                _write(stop.partial, out, ending)
                 say(f"{out}: only a part of the picture", quiet)
             raise
     drawn = time.perf_counter()
-    _write(rendering, out)
+    _write(rendering, out, ending)
     seconds = {"read": read - started, **rendering.seconds, "write": time.perf_counter() - drawn}
     return rendering, seconds
 
 
-def _write(rendering: Rendering, out: Path) -> None:
-    write_image(out, rendering.pixels, rendering.width, rendering.height)
+def _write(rendering: Rendering, out: Path, ending: str | None) -> None:
+    write_image(out, rendering.pixels, rendering.width, rendering.height, ending)

@@ -21,16 +21,19 @@ class ImageError(OSError):
     """A picture cannot be written; the message names the file and says why."""
 
 
-def check_writable(path: str | Path) -> None:
+def check_writable(path: str | Path, ending: str | None = None) -> None:
     """See that `write_image` could write `path`, so that no one waits for a picture that cannot be saved.
 
     Raises:
-        ImageError: its ending is unknown, its folder missing or not writable, or it is a folder itself.
+        ImageError: the ending is unknown, its folder missing or not writable, or it is a folder itself.
     """
     path = Path(path)
-    _check_ending(path)
+    ending = _known(path, ending)
     try:
-        temporary = _temporary(_target(path), path.suffix)
+        target = _target(path)
+        if _is_special(target):
+            return
+        temporary = _temporary(target, ending)
         try:
             temporary.touch(exist_ok=False)
         finally:
@@ -39,17 +42,19 @@ def check_writable(path: str | Path) -> None:
         raise ImageError(f"{path}: {_reason(error, path)}") from error
 
 
-def write_image(path: str | Path, pixels: Any, width: int, height: int) -> None:
-    """Write a picture; the ending of `path` chooses the format.
+def write_image(path: str | Path, pixels: Any, width: int, height: int, ending: str | None = None) -> None:
+    """Write a picture.
 
     Formats of 8 bits hold round(255 c), c clamped to 0..1 and NaN as 0, with no gamma; those of `FLOAT_ENDINGS` hold c.
-    The file appears as a whole or not at all, whatever happens; an older one is replaced.
+    The file appears as a whole or not at all, whatever happens; an older one is replaced. Into what is no file, such as
+    a pipe or /dev/null, the picture is copied.
 
     Args:
         path: the file; if it is a link, what it points to is written.
         pixels: buffer of height x width x 3 float32, linear RGB, row 0 on top.
         width: columns.
         height: rows.
+        ending: chooses the format; that of `path`, if not given.
 
     Raises:
         ImageError: it cannot be written.
@@ -60,15 +65,21 @@ def write_image(path: str | Path, pixels: Any, width: int, height: int) -> None:
     if values.format != "f" or not values.c_contiguous or values.nbytes != 12 * width * height or width < 1:
         expected = f"{width} x {height} pixels of three float32, one after the other"
         raise ValueError(f"expected {expected}, found {values.nbytes} bytes of format {values.format!r}")
-    _check_ending(path)
+    ending = _known(path, ending)
+    write = _write_ppm if ending == ".ppm" else _write_other
     try:
         target = _target(path)
-        temporary = _temporary(target, path.suffix)
+        if _is_special(target):
+            from tempfile import TemporaryDirectory
+
+            with TemporaryDirectory() as folder:
+                picture = Path(folder) / f"picture{ending}"
+                write(picture, values, width, height)
+                target.write_bytes(picture.read_bytes())
+            return
+        temporary = _temporary(target, ending)
         try:
-            if path.suffix.lower() == ".ppm":
-                _write_ppm(temporary, values, width, height)
-            else:
-                _write_other(temporary, values, width, height)
+            write(temporary, values, width, height)
             temporary.replace(target)
         finally:  # an interrupt too
             _remove(temporary)
@@ -108,16 +119,16 @@ def _write_other(path: Path, values: memoryview, width: int, height: int) -> Non
         raise OSError(complaints[0] if complaints else "OpenImageIO does not say why")
 
 
-def _check_ending(path: Path) -> None:
-    """Raise `ImageError` for a format that nobody writes."""
-    ending = path.suffix.lower()
+def _known(path: Path, given: str | None) -> str:
+    """The given ending, else that of `path`; `ImageError` for a format that nobody writes."""
+    ending = (path.suffix if given is None else given).lower()
     if ending == ".ppm":
-        return
+        return ending
     if ending and ending not in _NO_FILES:
         import OpenImageIO as oiio  # noqa: N813
 
         if oiio.ImageOutput.create(f"picture{ending}") is not None:
-            return
+            return ending
         oiio.geterror()  # clears it
     found = f"unknown picture format {ending!r}" if ending else "no ending that says which picture format is meant"
     raise ImageError(f"{path}: {found}; use one of {', '.join(COMMON_ENDINGS)}")
@@ -134,6 +145,11 @@ def _target(path: Path) -> Path:
     if target.exists() and not os.access(target, os.W_OK):  # replacing it would succeed, and is not wanted
         raise PermissionError(errno.EACCES, "the file there is write-protected")
     return target
+
+
+def _is_special(target: Path) -> bool:
+    """Whether there is something that is no file, and must not be replaced by one."""
+    return target.exists() and not target.is_file()
 
 
 def _temporary(target: Path, ending: str) -> Path:
