@@ -25,6 +25,7 @@ from converter.commands.inspection import inspect_scene
 from converter.images.texture import TextureError
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
+from converter.scene import parser
 from converter.scene.cutoff import cutoff_bound
 from converter.scene.errors import SceneError
 from converter.scene.model import Checker, Finish, Light, Scene, Solid, Sphere
@@ -183,6 +184,35 @@ def test_a_device_that_never_ends_is_no_scene(device: str) -> None:
     if not os.access(device, os.R_OK):
         pytest.skip(f"there is no {device}")
     assert "binary data" in str(refusal(Path(device)))
+
+
+def test_what_is_no_text_is_read_no_farther(tmp_path: Path) -> None:
+    """A gigabyte of nothing, after a comment as long as a scene."""
+    file = tmp_path / "sparse.in"
+    with file.open("wb") as opened:
+        opened.write(b"#" * 100_000)
+        opened.truncate(1 << 30)
+    tracemalloc.start()
+    try:
+        error = refusal(file)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert "binary data (a NUL byte)" in str(error)
+    assert peak < 1 << 21
+
+
+def test_a_text_that_never_ends_is_no_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(parser, "LONGEST", 1 << 20)
+    pipe = tmp_path / "pipe.in"
+    os.mkfifo(pipe)
+    with (
+        os.fdopen(os.open(pipe, os.O_RDWR), "wb", buffering=0) as end,
+        subprocess.Popen(["yes"], stdout=end) as endless,
+    ):
+        error = refusal(pipe)
+        endless.kill()
+    assert str(error) == f"{pipe}: this is longer than any scene"
 
 
 def test_links_and_folders_are_no_scenes(tmp_path: Path) -> None:
