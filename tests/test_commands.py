@@ -161,6 +161,16 @@ def test_raytrace_into_a_pipe(scene, tmp_path):
     assert pipe.is_fifo()
 
 
+def test_raytrace_never_draws_over_the_scene(scene, tmp_path, capsys):
+    text = scene.read_text()
+    (tmp_path / "link").symlink_to(scene)
+    for out in (scene, tmp_path / "link"):
+        assert raytrace.main([str(scene), str(out), "4", "3"]) == 2
+        told = f"raytrace: {out}: this is the scene, which the picture would replace\n"
+        assert capsys.readouterr().err == told
+    assert scene.read_text() == text
+
+
 def test_raytrace_leaves_a_file_of_a_similar_name(scene, tmp_path):
     other = tmp_path / ".picture.ppm"
     other.write_text("another")
@@ -823,3 +833,35 @@ def test_doctor_survives_what_aborts_its_child(monkeypatch):
     assert doctor_probe.try_variant("llvm_ad_rgb") == doctor_probe.Trial(
         False, "the process dies of SIGABRT: LLVM ERROR: Cannot select"
     )
+
+
+# ---- Names that are no UTF-8
+
+
+@pytest.fixture
+def oddly_named(scene):
+    r"""A scene, n\xff.in, in a folder of a name like that."""
+    folder = scene.parent / os.fsdecode(b"f\xff")
+    folder.mkdir()
+    return scene.rename(folder / os.fsdecode(b"n\xff.in"))
+
+
+def test_a_name_that_is_no_utf_8_is_drawn_into_charts_and_figures(whitted, oddly_named, tmp_path):
+    csv = tmp_path / "chart.csv"
+    options = ("-o", tmp_path / "chart.svg", "--csv", csv, "--size", "4x3", "--methods", "native", "--runs", 2)
+    assert whitted("chart", oddly_named, *options, "-q")[0] == 0
+    assert "n\ufffd.in" in csv.read_text()
+    images = [oddly_named.with_suffix(suffix) for suffix in (".ppm", ".a.ppm")]
+    for image in images:
+        assert raytrace.main([str(oddly_named), str(image), "8", "6"]) == 0
+    assert whitted("compare", *images, "--png", tmp_path / "difference.png")[0] == 0
+
+
+def test_what_takes_no_such_name_says_so(whitted, oddly_named, tmp_path):
+    status, _, err = whitted("render", oddly_named, oddly_named.with_suffix(".png"), 4, 3, "--method", "native", "-q")
+    assert status == 2
+    assert "need folders whose names are UTF-8" in err
+    oddly_named.with_suffix(".png").write_bytes(b"\x89PNG\r\n\x1a\n")
+    status, _, err = whitted("compare", oddly_named.with_suffix(".png"), oddly_named.with_suffix(".png"))
+    assert status == 2
+    assert "its name or its folder's is not UTF-8" in err

@@ -1,5 +1,6 @@
 """From a scene file to an image file, as `raytrace` and `whitted render` do it."""
 
+import errno
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -32,11 +33,13 @@ def draw(
 
     Raises:
         SceneError: the scene is no scene.
-        OSError: the image cannot be written there; known before anything is drawn.
+        OSError: the image cannot be written there, or is the scene itself; known before anything is drawn.
         RendererUnavailable: the renderer does not run here.
         Interrupted: Ctrl-C while drawing.
 
     """
+    if out.exists() and scene_file.exists() and out.samefile(scene_file):
+        raise FileExistsError(errno.EEXIST, "this is the scene, which the picture would replace", str(out))
     check_writable(out, ending)
     started = time.perf_counter()
     scene = load_with_notices(scene_file, settings, quiet, method)

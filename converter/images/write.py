@@ -9,6 +9,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from converter.files import is_special, replacing, temporary_name
+
 COMMON_ENDINGS = (".ppm", ".png", ".exr", ".jpg", ".tif", ".hdr", ".pfm", ".bmp", ".tga", ".webp")
 """Endings to suggest; OpenImageIO knows more."""
 FLOAT_ENDINGS = frozenset({".exr", ".hdr", ".pfm", ".tif", ".tiff"})
@@ -31,13 +33,14 @@ def check_writable(path: str | Path, ending: str | None = None) -> None:
     ending = _known(path, ending)
     try:
         target = _target(path)
-        if _is_special(target):
+        if is_special(target):
             return
-        temporary = _temporary(target, ending)
+        temporary = temporary_name(target, ending)
         try:
             temporary.touch(exist_ok=False)
         finally:
-            _remove(temporary)
+            with suppress(OSError):
+                temporary.unlink()
     except OSError as error:
         raise ImageError(f"{path}: {_reason(error, path)}") from error
 
@@ -68,21 +71,8 @@ def write_image(path: str | Path, pixels: Any, width: int, height: int, ending: 
     ending = _known(path, ending)
     write = _write_ppm if ending == ".ppm" else _write_other
     try:
-        target = _target(path)
-        if _is_special(target):
-            from tempfile import TemporaryDirectory
-
-            with TemporaryDirectory() as folder:
-                picture = Path(folder) / f"picture{ending}"
-                write(picture, values, width, height)
-                target.write_bytes(picture.read_bytes())
-            return
-        temporary = _temporary(target, ending)
-        try:
+        with replacing(_target(path), ending) as temporary:
             write(temporary, values, width, height)
-            temporary.replace(target)
-        finally:  # an interrupt too
-            _remove(temporary)
     except OSError as error:
         raise ImageError(f"{path}: {_reason(error, path)}") from error
 
@@ -108,7 +98,7 @@ def _write_other(path: Path, values: memoryview, width: int, height: int) -> Non
     with path.open("xb") as file:
         os.posix_fallocate(file.fileno(), 0, data.nbytes + 65536)
         file.truncate(0)
-    output = oiio.ImageOutput.create(str(path))
+    output = oiio.ImageOutput.create(_utf8(path))
     if output is None:
         raise OSError(oiio.geterror())
     done = output.open(str(path), oiio.ImageSpec(width, height, 3, format_))
@@ -117,6 +107,15 @@ def _write_other(path: Path, values: memoryview, width: int, height: int) -> Non
     complaints = [line for line in output.geterror().splitlines() if _HARMLESS not in line]
     if not done or complaints:
         raise OSError(complaints[0] if complaints else "OpenImageIO does not say why")
+
+
+def _utf8(path: Path) -> str:
+    """A path as OpenImageIO takes it; `ImageError` where its bytes are no UTF-8."""
+    try:
+        return str(path).encode().decode()
+    except UnicodeEncodeError as error:
+        told = f"{path.suffix} files need folders whose names are UTF-8, which PPM files do not"
+        raise ImageError(told) from error
 
 
 def _known(path: Path, given: str | None) -> str:
@@ -147,22 +146,9 @@ def _target(path: Path) -> Path:
     return target
 
 
-def _is_special(target: Path) -> bool:
-    """Whether there is something that is no file, and must not be replaced by one."""
-    return target.exists() and not target.is_file()
-
-
-def _temporary(target: Path, ending: str) -> Path:
-    """A new name beside `target`, so on the same file system, with the ending that tells the format."""
-    return target.with_name(f".whitted-{os.getpid()}-{os.urandom(4).hex()}{ending}")
-
-
-def _remove(temporary: Path) -> None:
-    with suppress(OSError):  # it was never made, or is already in its place
-        temporary.unlink()
-
-
 def _reason(error: OSError, path: Path) -> str:
+    if isinstance(error, ImageError):
+        return str(error)
     if isinstance(error, FileNotFoundError):
         return f"there is no folder {str(path.parent)!r}"
     if isinstance(error, NotADirectoryError):

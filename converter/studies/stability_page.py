@@ -5,8 +5,8 @@ from pathlib import Path
 
 import numpy as np
 
-from converter.commands.files import replacing
 from converter.compare.metrics import Pixels, clamped
+from converter.files import replacing
 from converter.images.write import write_image
 from converter.studies.stability import FamilyStudy, Outcome
 from converter.studies.stability_figure import draw_stability
