@@ -52,7 +52,10 @@ def replacing(path: Path, ending: str | None = None) -> Iterator[Path]:
         with TemporaryDirectory() as folder:
             temporary = Path(folder) / f"file{ending}"
             yield temporary
-            target.write_bytes(temporary.read_bytes())
+            try:
+                target.write_bytes(temporary.read_bytes())
+            except OSError as error:  # writing, unlike opening, does not say what
+                raise OSError(error.errno, error.strerror, str(path)) from error
         return
     temporary = temporary_name(target, ending)
     try:

@@ -440,6 +440,21 @@ def test_an_error_that_ctrl_c_turned_into(whitted, scene, tmp_path, monkeypatch)
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
 
 
+def test_sigterm_leaves_no_file(scene, tmp_path, monkeypatch, capsys):
+    def write(path, *_):
+        path.write_text("half")
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(5)
+
+    (tmp_path / "a.ppm").write_text("older")
+    monkeypatch.setattr("converter.images.write._write_ppm", write)
+    assert raytrace.main([str(scene), str(tmp_path / "a.ppm"), "8", "6"]) == 143
+    assert capsys.readouterr().err.endswith("raytrace: interrupted\n")
+    assert (tmp_path / "a.ppm").read_text() == "older"
+    assert len(list(tmp_path.iterdir())) == 2
+    assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
+
+
 def test_ctrl_c_during_an_import_ends_the_process_at_once(tmp_path):
     """Else a compiled module that is half loaded may abort it."""
     (tmp_path / "slow.py").write_text(
