@@ -3,6 +3,7 @@
 import io
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -235,6 +236,15 @@ def test_size_may_follow_the_options(whitted, scene, tmp_path):
 
 def test_quiet_says_nothing(whitted, scene, tmp_path):
     assert whitted("render", scene, tmp_path / "a.ppm", 8, 6, "--method", "native", "--quiet") == (0, "", "")
+
+
+def test_pixels_that_are_no_numbers_are_told(whitted, scene, tmp_path):
+    """0 times infinity: a light beyond all numbers that has no blue."""
+    scene.write_text(SCENE.replace("5 5 -9 .8 .8 .8 1 0 0", "5 5 -9 .8 .8 0 5e-324 0 0"))
+    status, _, err = whitted("render", scene, tmp_path / "a.ppm", 8, 6, "--method", "native")
+    assert status == 0
+    assert re.search(r"a\.ppm: \d+ of 48 pixels are no numbers \(NaN\): the colours there exceed all numbers", err)
+    assert "NaN" not in whitted("render", scene, tmp_path / "a.ppm", 8, 6, "--method", "native", "--quiet")[2]
 
 
 def test_stats_go_to_stdout(whitted, scene, tmp_path):

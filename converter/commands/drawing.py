@@ -54,9 +54,19 @@ def draw(
             raise
     drawn = time.perf_counter()
     _write(rendering, out, ending)
+    _warn_of_nan(rendering, out, quiet)
     seconds = {"read": read - started, **rendering.seconds, "write": time.perf_counter() - drawn}
     return rendering, seconds
 
 
 def _write(rendering: Rendering, out: Path, ending: str | None) -> None:
     write_image(out, rendering.pixels, rendering.width, rendering.height, ending)
+
+
+def _warn_of_nan(rendering: Rendering, out: Path, quiet: bool) -> None:
+    """Say it where nothing less than a number's range kept a pixel from being one: most formats have black for it."""
+    from native_tracer import count_nan_pixels
+
+    if count := count_nan_pixels(rendering.pixels):
+        share = f"{count} of {rendering.width * rendering.height} pixels"
+        say(f"warning: {out}: {share} are no numbers (NaN): the colours there exceed all numbers", quiet)
