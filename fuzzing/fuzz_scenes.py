@@ -2,18 +2,22 @@
 
 `make fuzz SECONDS=60` runs it from the gallery and from tests/corpus. An input that begins like a PPM file is read as a
 texture, every other one as a scene: it is refused with a `SceneError`, or converted for Mitsuba and for POV-Ray, which
-may be refused as well, and drawn by the native tracer. Whatever else happens is a failure, and the input that led to it
-is left in out/fuzz. A failure that is mended becomes a file in tests/corpus.
+may be refused as well, and drawn by the native tracer. Some are drawn by Mitsuba too, some read with an eye on memory,
+and some given to the programs as files, which takes longer. Whatever else happens is a failure, and so are ten seconds
+and a gigabyte; the input that led to it is left in out/fuzz. A failure that is mended becomes a file in tests/corpus.
 """
 
+import ctypes
 import importlib
-import io
+import os
 import random
 import re
+import resource
 import sys
-from contextlib import suppress
+import zlib
 from dataclasses import replace
 from pathlib import Path
+from tempfile import TemporaryDirectory
 
 import atheris
 
@@ -26,25 +30,20 @@ LONGEST = 1 << 12
 importlib.import_module("native_tracer")
 
 sys.meta_path[:] = [finder for finder in sys.meta_path if not type(finder).__module__.startswith("_editable")]
-sys.path.insert(0, str(ROOT))
+sys.path[:0] = [str(ROOT), str(ROOT / "tests")]
 with atheris.instrument_imports(include=["converter"]):
-    from converter.images import ppm
-    from converter.renderers.native import NativeRenderer
-    from converter.scene.cutoff import cutoff_bound
-    from converter.scene.entries import KEYWORDS
-    from converter.scene.errors import SceneError
-    from converter.scene.geometry import check_geometry
-    from converter.scene.model import Scene, Texmap
-    from converter.scene.needs import scene_needs
-    from converter.scene.notices import scene_notices
-    from converter.scene.parser import parse_scene
-    from converter.scene.settings import Settings
-    from converter.to_mitsuba.export import ExportError
-    from converter.to_mitsuba.polyhedra import PolyhedronError
-    from converter.to_mitsuba.scene import scene_description
-    from converter.to_povray.scene import povray_scene
+    import checks
 
-SETTINGS = Settings(width=4, height=3, max_depth=4, threads=1)
+    from converter.images import ppm
+    from converter.scene.entries import KEYWORDS
+    from converter.scene.geometry import check_geometry
+    from converter.scene.model import Texmap
+    from converter.scene.parser import load_scene
+
+MEASURED, BY_MITSUBA, BY_PROGRAMS = 16, 32, 64
+"""One of so many inputs has its memory measured, is drawn by Mitsuba, if it is a scene, or is given to the programs."""
+MOST_MEMORY = 1 << 30
+"""Bytes of address space beyond those that everything takes once it has been used."""
 TEXTURE = ROOT / "scenes" / "rainbow1.ppm"
 NUMBERS = (
     b"0 -0 1 -1 2 .5 1e-9 1e9 1e-38 1e38 1e-162 1e155 1e-300 1e300 5e-324 1.7e308 -1.7e308 nan inf 1e999 1e-999".split()
@@ -54,37 +53,39 @@ WORDS = [*NUMBERS, *(word.encode() for word in sorted(KEYWORDS)), b"#", b"\n", b
 
 def check(data: bytes) -> None:
     """Read, convert and draw an input; anything but the errors meant for users escapes."""
-    if ppm.is_ppm(data):
-        with suppress(ValueError):
-            header = ppm.read_header(data[: ppm.HEADER_BYTES], len(data))
-            assert len(ppm.read_samples(io.BytesIO(data), header)) == header.samples
-        return
-    try:
-        scene = parse_scene(data)
-    except SceneError as error:
-        assert error.problems
-        assert len(str(error)) < 1 << 14
-        return
-    if check_geometry(scene):
+    # Which inputs are looked into more closely is in their bytes, so that a failure can be repeated.
+    lot = zlib.crc32(data)
+    read = checks.read_texture if ppm.is_ppm(data) else checks.read_scene
+    if lot % MEASURED == 0:
+        checks.read_in_little_memory(read, data)
+    if lot % BY_PROGRAMS == 0:
+        with TemporaryDirectory() as folder:
+            checks.run_programs(data, Path(folder))
+    scene = read(data)
+    if scene is None or check_geometry(scene):
         return
     pigments = (
         replace(pigment, file=TEXTURE) if isinstance(pigment, Texmap) else pigment for pigment in scene.pigments
     )
-    use(replace(scene, pigments=tuple(pigments)))
+    scene = replace(scene, pigments=tuple(pigments))
+    checks.convert(scene)
+    checks.draw(scene)
+    if lot % BY_MITSUBA == 0:
+        checks.draw_with_mitsuba(scene)
 
 
-def use(scene: Scene) -> None:
-    """Do with a good scene all that there is to do."""
-    scene_needs(scene, SETTINGS)
-    scene_notices(scene, SETTINGS)
-    cutoff_bound(scene, SETTINGS)
-    scene_description(scene, SETTINGS, with_shapes=False)
-    with suppress(PolyhedronError):
-        scene_description(scene, SETTINGS)
-    with suppress(ExportError):
-        povray_scene(scene, SETTINGS)
-    for search in ("brute", "bvh"):
-        NativeRenderer(search=search).render(scene, SETTINGS)
+@ctypes.CFUNCTYPE(None, ctypes.c_void_p)
+def end_at_once(_: object) -> None:
+    """What `exit` calls first: threads of the renderers, which it knows nothing of, abort the process later on."""
+    os._exit(0)
+
+
+def limit_memory() -> None:
+    """Let an allocation fail, which is a failure like others, that no input of this length justifies."""
+    checks.draw_with_mitsuba(load_scene(ROOT / "scenes" / "whitted.in"))
+    pages = int(Path("/proc/self/statm").read_text().split()[0])
+    limit = pages * resource.getpagesize() + MOST_MEMORY
+    resource.setrlimit(resource.RLIMIT_AS, (limit, limit))
 
 
 def mutate(data: bytes, most: int, seed: int) -> bytes:
@@ -121,6 +122,8 @@ def main() -> None:
     words.write_text("".join('"' + "".join(map(r"\x{:02x}".format, word)) + '"\n' for word in WORDS))
     options = [f"-max_total_time={seconds}", f"-max_len={LONGEST}", f"-dict={words}", f"-artifact_prefix={FOUND}/"]
     options += ["-timeout=10", "-rss_limit_mb=2048", "-print_final_stats=1", *more]
+    limit_memory()
+    ctypes.CDLL(None).__cxa_atexit(end_at_once, None, None)
     seeds = [kept, ROOT / "scenes", ROOT / "tests" / "corpus"]
     atheris.Setup([sys.argv[0], *options, *map(str, seeds)], check, custom_mutator=mutate)
     atheris.Fuzz()

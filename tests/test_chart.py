@@ -17,7 +17,7 @@ from studies_fakes import crowded_study, difference, measured, study
 
 from converter.commands import chart as command
 from converter.commands import main
-from converter.commands.files import check_target, replacing
+from converter.files import check_target, replacing
 from converter.renderers.base import RendererUnavailable, Rendering
 from converter.renderers.methods import METHODS, Method
 from converter.renderers.native import NativeRenderer
@@ -682,15 +682,18 @@ def test_a_file_is_replaced_whole_or_not_at_all(tmp_path):
     assert list(tmp_path.iterdir()) == [file]
 
 
-def test_a_link_stays_and_what_is_no_file_is_written_as_it_is(tmp_path):
+def test_a_link_stays_and_into_what_is_no_file_is_copied(tmp_path):
     (tmp_path / "link").symlink_to("file")
     with replacing(tmp_path / "link") as temporary:
         temporary.write_text("new")
     assert (tmp_path / "link").is_symlink()
     assert (tmp_path / "file").read_text() == "new"
     os.mkfifo(tmp_path / "pipe")
-    with replacing(tmp_path / "pipe") as pipe:
-        assert pipe == tmp_path / "pipe"
+    with os.fdopen(os.open(tmp_path / "pipe", os.O_RDWR), "rb", buffering=0) as reader:
+        with replacing(tmp_path / "pipe", ".svg") as temporary:
+            assert temporary.suffix == ".svg"
+            temporary.write_text("new")
+        assert reader.read(3) == b"new"
     assert (tmp_path / "pipe").is_fifo()
 
 

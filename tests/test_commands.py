@@ -3,6 +3,7 @@
 import io
 import json
 import os
+import re
 import signal
 import subprocess
 import sys
@@ -149,6 +150,35 @@ def test_raytrace_writes_ppm_whatever_the_name(scene, tmp_path, name):
     assert sorted(file.name for file in tmp_path.iterdir()) == sorted([name, "small.in"])
 
 
+def test_raytrace_into_a_pipe(scene, tmp_path):
+    """It stays one: /dev/null would be no more than a picture otherwise."""
+    pipe = tmp_path / "pipe"
+    os.mkfifo(pipe)
+    with os.fdopen(
+        os.open(pipe, os.O_RDWR), "rb", buffering=0
+    ) as reader:  # both ends, so that neither waits for the other
+        assert raytrace.main([str(scene), str(pipe), "4", "3"]) == 0
+        assert reader.read(11) == b"P6\n4 3\n255\n"
+    assert pipe.is_fifo()
+
+
+def test_raytrace_never_draws_over_the_scene(scene, tmp_path, capsys):
+    text = scene.read_text()
+    (tmp_path / "link").symlink_to(scene)
+    for out in (scene, tmp_path / "link"):
+        assert raytrace.main([str(scene), str(out), "4", "3"]) == 2
+        told = f"raytrace: {out}: this is the scene, which the picture would replace\n"
+        assert capsys.readouterr().err == told
+    assert scene.read_text() == text
+
+
+def test_raytrace_leaves_a_file_of_a_similar_name(scene, tmp_path):
+    other = tmp_path / ".picture.ppm"
+    other.write_text("another")
+    assert raytrace.main([str(scene), str(tmp_path / "picture"), "4", "3"]) == 0
+    assert other.read_text() == "another"
+
+
 def test_raytrace_goes_by_a_known_ending(scene, tmp_path):
     assert raytrace.main([str(scene), str(tmp_path / "a.png"), "4", "3"]) == 0
     assert (tmp_path / "a.png").read_bytes().startswith(b"\x89PNG")
@@ -206,6 +236,15 @@ def test_size_may_follow_the_options(whitted, scene, tmp_path):
 
 def test_quiet_says_nothing(whitted, scene, tmp_path):
     assert whitted("render", scene, tmp_path / "a.ppm", 8, 6, "--method", "native", "--quiet") == (0, "", "")
+
+
+def test_pixels_that_are_no_numbers_are_told(whitted, scene, tmp_path):
+    """0 times infinity: a light beyond all numbers that has no blue."""
+    scene.write_text(SCENE.replace("5 5 -9 .8 .8 .8 1 0 0", "5 5 -9 .8 .8 0 5e-324 0 0"))
+    status, _, err = whitted("render", scene, tmp_path / "a.ppm", 8, 6, "--method", "native")
+    assert status == 0
+    assert re.search(r"a\.ppm: \d+ of 48 pixels are no numbers \(NaN\): the colours there exceed all numbers", err)
+    assert "NaN" not in whitted("render", scene, tmp_path / "a.ppm", 8, 6, "--method", "native", "--quiet")[2]
 
 
 def test_stats_go_to_stdout(whitted, scene, tmp_path):
@@ -409,6 +448,21 @@ def test_an_error_that_ctrl_c_turned_into(whitted, scene, tmp_path, monkeypatch)
     monkeypatch.setattr(NativeRenderer, "render", render)
     assert whitted("render", scene, tmp_path / "a.ppm", "--method", "native")[0] == 130
     assert signal.getsignal(signal.SIGINT) is signal.default_int_handler
+
+
+def test_sigterm_leaves_no_file(scene, tmp_path, monkeypatch, capsys):
+    def write(path, *_):
+        path.write_text("half")
+        os.kill(os.getpid(), signal.SIGTERM)
+        time.sleep(5)
+
+    (tmp_path / "a.ppm").write_text("older")
+    monkeypatch.setattr("converter.images.write._write_ppm", write)
+    assert raytrace.main([str(scene), str(tmp_path / "a.ppm"), "8", "6"]) == 143
+    assert capsys.readouterr().err.endswith("raytrace: interrupted\n")
+    assert (tmp_path / "a.ppm").read_text() == "older"
+    assert len(list(tmp_path.iterdir())) == 2
+    assert signal.getsignal(signal.SIGTERM) is signal.SIG_DFL
 
 
 def test_ctrl_c_during_an_import_ends_the_process_at_once(tmp_path):
@@ -804,3 +858,35 @@ def test_doctor_survives_what_aborts_its_child(monkeypatch):
     assert doctor_probe.try_variant("llvm_ad_rgb") == doctor_probe.Trial(
         False, "the process dies of SIGABRT: LLVM ERROR: Cannot select"
     )
+
+
+# ---- Names that are no UTF-8
+
+
+@pytest.fixture
+def oddly_named(scene):
+    r"""A scene, n\xff.in, in a folder of a name like that."""
+    folder = scene.parent / os.fsdecode(b"f\xff")
+    folder.mkdir()
+    return scene.rename(folder / os.fsdecode(b"n\xff.in"))
+
+
+def test_a_name_that_is_no_utf_8_is_drawn_into_charts_and_figures(whitted, oddly_named, tmp_path):
+    csv = tmp_path / "chart.csv"
+    options = ("-o", tmp_path / "chart.svg", "--csv", csv, "--size", "4x3", "--methods", "native", "--runs", 2)
+    assert whitted("chart", oddly_named, *options, "-q")[0] == 0
+    assert "n\ufffd.in" in csv.read_text()
+    images = [oddly_named.with_suffix(suffix) for suffix in (".ppm", ".a.ppm")]
+    for image in images:
+        assert raytrace.main([str(oddly_named), str(image), "8", "6"]) == 0
+    assert whitted("compare", *images, "--png", tmp_path / "difference.png")[0] == 0
+
+
+def test_what_takes_no_such_name_says_so(whitted, oddly_named, tmp_path):
+    status, _, err = whitted("render", oddly_named, oddly_named.with_suffix(".png"), 4, 3, "--method", "native", "-q")
+    assert status == 2
+    assert "need folders whose names are UTF-8" in err
+    oddly_named.with_suffix(".png").write_bytes(b"\x89PNG\r\n\x1a\n")
+    status, _, err = whitted("compare", oddly_named.with_suffix(".png"), oddly_named.with_suffix(".png"))
+    assert status == 2
+    assert "its name or its folder's is not UTF-8" in err

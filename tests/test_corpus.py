@@ -19,15 +19,16 @@ from typing import Any
 
 import numpy as np
 import pytest
+from finite import assert_finite
 
 from converter.commands import main, raytrace
 from converter.commands.inspection import inspect_scene
 from converter.images.texture import TextureError
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
-from converter.scene.cutoff import cutoff_bound
+from converter.scene import parser
 from converter.scene.errors import SceneError
-from converter.scene.model import Checker, Finish, Light, Scene, Solid, Sphere
+from converter.scene.model import Sphere
 from converter.scene.parser import MOST_PROBLEMS, load_scene, parse_scene
 from converter.scene.settings import Settings
 from converter.to_mitsuba.export import ExportError, export_scene
@@ -79,28 +80,6 @@ def refusal(file: Path) -> SceneError:
     with pytest.raises(SceneError) as caught:
         load_scene(file)
     return caught.value
-
-
-def assert_finite(pixels: Any, scene: Scene) -> None:
-    """A pixel may be no number only where colours, single or summed up as their bound has it, exceed single precision.
-
-    That is for rays in double precision. In single precision any number of the scene may be too large to be one.
-    """
-    if max(cutoff_bound(scene, SETTINGS).brightest, *colors_of(scene)) < float(np.finfo(np.float32).max):
-        assert np.isfinite(np.asarray(pixels)).all()
-
-
-def colors_of(scene: Scene) -> Iterator[float]:
-    """Whatever colours are made of."""
-    yield from map(abs, scene.ambient)
-    for element in (*scene.lights, *scene.pigments, *scene.finishes):
-        match element:
-            case Light(_, color) | Solid(color):
-                yield from map(abs, color)
-            case Checker(first, second):
-                yield from map(abs, (*first, *second))
-            case Finish(ka, kd, ks, _, kr, kt):
-                yield from (ka, kd, ks, kr, kt)
 
 
 # ---- Scenes that are refused -----------------------------------------------------------------------------------------
@@ -185,6 +164,35 @@ def test_a_device_that_never_ends_is_no_scene(device: str) -> None:
     assert "binary data" in str(refusal(Path(device)))
 
 
+def test_what_is_no_text_is_read_no_farther(tmp_path: Path) -> None:
+    """A gigabyte of nothing, after a comment as long as a scene."""
+    file = tmp_path / "sparse.in"
+    with file.open("wb") as opened:
+        opened.write(b"#" * 100_000)
+        opened.truncate(1 << 30)
+    tracemalloc.start()
+    try:
+        error = refusal(file)
+        _, peak = tracemalloc.get_traced_memory()
+    finally:
+        tracemalloc.stop()
+    assert "binary data (a NUL byte)" in str(error)
+    assert peak < 1 << 21
+
+
+def test_a_text_that_never_ends_is_no_scene(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(parser, "LONGEST", 1 << 20)
+    pipe = tmp_path / "pipe.in"
+    os.mkfifo(pipe)
+    with (
+        os.fdopen(os.open(pipe, os.O_RDWR), "wb", buffering=0) as end,
+        subprocess.Popen(["yes"], stdout=end) as endless,
+    ):
+        error = refusal(pipe)
+        endless.kill()
+    assert str(error) == f"{pipe}: this is longer than any scene"
+
+
 def test_links_and_folders_are_no_scenes(tmp_path: Path) -> None:
     loop = tmp_path / "loop.in"
     loop.symlink_to(loop)
@@ -206,7 +214,7 @@ def test_an_odd_scene_is_drawn(file: Path) -> None:
     }
     for precision in ("float", "double"):
         np.testing.assert_array_equal(pictures[precision, "brute"], pictures[precision, "bvh"])
-    assert_finite(pictures["double", "bvh"], scene)
+    assert_finite(pictures["double", "bvh"], scene, SETTINGS)
 
 
 @no_warning
@@ -234,27 +242,27 @@ def test_an_odd_scene_is_inspected_and_converted(file: Path, tmp_path: Path) -> 
 def test_mitsuba_draws_an_odd_scene(file: Path, mi: Any) -> None:
     # Through the tree, whose kernel most scenes share; small scenes would each be compiled into one of their own.
     scene = load_scene(file)
-    assert_finite(MitsubaRenderer(mi.variant(), "bvh").render(scene, SETTINGS).pixels, scene)
+    assert_finite(MitsubaRenderer(mi.variant(), "bvh").render(scene, SETTINGS).pixels, scene, SETTINGS)
 
 
 @no_warning
 @each("name", ["smallest", "radius_1e308", "normal_denormal", "everything_1e308", "eye_inside_everything"])
 def test_mitsuba_draws_a_small_odd_scene_by_default(name: str, mi: Any) -> None:
     scene = load_scene(CORPUS / "drawn" / f"{name}.in")
-    assert_finite(MitsubaRenderer(mi.variant()).render(scene, SETTINGS).pixels, scene)
+    assert_finite(MitsubaRenderer(mi.variant()).render(scene, SETTINGS).pixels, scene, SETTINGS)
 
 
 def test_mitsuba_draws_many_bodies_without_a_box(mi: Any) -> None:
     scene = load_scene(CORPUS / "drawn" / "radius_1e308.in")
     ball = replace(scene.objects[0], shape=Sphere((1e308, 1e308, 1e308), 1e308))
     many = replace(scene, objects=scene.objects + 40 * (ball,))
-    assert_finite(MitsubaRenderer(mi.variant()).render(many, SETTINGS).pixels, many)
+    assert_finite(MitsubaRenderer(mi.variant()).render(many, SETTINGS).pixels, many, SETTINGS)
 
 
 def test_an_index_beyond_all_numbers_is_drawn() -> None:
     text = TEXTURED.replace("texmap {} .1 .2 .3 0 .3 .2 .1 0", "solid 1 1 1")
     scene = parse_scene(text.replace("1 0 0 1 0 0 0", "1 0 0 1 0 1 5e-324"))
-    assert_finite(NativeRenderer().render(scene, replace(SETTINGS, ior="index")).pixels, scene)
+    assert_finite(NativeRenderer().render(scene, replace(SETTINGS, ior="index")).pixels, scene, SETTINGS)
 
 
 # ---- Textures --------------------------------------------------------------------------------------------------------
@@ -297,7 +305,7 @@ def test_a_texture_that_is_no_image_draws_nothing(
 @each("image", ODD_TEXTURES, ids=names(ODD_TEXTURES))
 def test_an_odd_texture_is_drawn(image: Path, tmp_path: Path) -> None:
     scene = load_scene(textured(tmp_path, image))
-    assert_finite(NativeRenderer().render(scene, SETTINGS).pixels, scene)
+    assert_finite(NativeRenderer().render(scene, SETTINGS).pixels, scene, SETTINGS)
     export_scene(scene, SETTINGS, tmp_path / "folder")
     export_povray(scene, SETTINGS, tmp_path / "scene.pov")
 

@@ -1,5 +1,7 @@
 """`whitted convert`: a folder that Mitsuba loads, whose picture is `whitted render`'s."""
 
+import errno
+
 import numpy as np
 import pytest
 
@@ -86,6 +88,27 @@ def test_refuses_a_folder_with_other_files(small_scene, tmp_path):
     with pytest.raises(ExportError, match="new or empty folder"):
         export_scene(small_scene, Settings(), tmp_path)
     assert [path.name for path in tmp_path.iterdir()] == ["thesis.tex"]
+
+
+def test_a_full_disk_leaves_the_earlier_export(small_scene, textured, tmp_path, monkeypatch):
+    folder = tmp_path / "out"
+    before = {file: file.read_bytes() for file in export_scene(textured, Settings(), folder)}
+
+    def full(*_):
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("converter.to_mitsuba.polyhedra.write_ply", full)
+    for target in (folder, tmp_path / "new"):
+        with pytest.raises(OSError, match="No space"):
+            export_scene(small_scene, Settings(), target)
+    assert {path: path.read_bytes() for path in folder.rglob("*") if path.is_file()} == before
+    assert not (tmp_path / "new").exists()
+
+
+def test_a_readme_that_is_no_text_is_of_no_export(small_scene, tmp_path):
+    (tmp_path / "README.txt").write_bytes(b"\xff\xfe")
+    with pytest.raises(ExportError, match="new or empty folder"):
+        export_scene(small_scene, Settings(), tmp_path)
 
 
 def test_replaces_an_earlier_export(small_scene, textured, tmp_path):

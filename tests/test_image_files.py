@@ -1,5 +1,6 @@
 """Pictures are written as they should be, whole or not at all, and trouble is told before it costs anything."""
 
+import os
 import resource
 import subprocess
 import sys
@@ -110,6 +111,39 @@ def test_a_link_stays_and_its_target_is_written(tmp_path: Path) -> None:
     assert (tmp_path / "a.png").is_symlink()
     assert (tmp_path / "real" / "b.data").read_bytes().startswith(b"\x89PNG")
     assert files(tmp_path / "real") == ["b.data"]
+
+
+@pytest.mark.parametrize("name", ["pipe.ppm", "pipe.png", "link.ppm"])
+def test_into_a_pipe_the_picture_is_copied(name: str, tmp_path: Path) -> None:
+    pipe = tmp_path / f"pipe{Path(name).suffix}"
+    os.mkfifo(pipe)
+    (tmp_path / "link.ppm").symlink_to(pipe)
+    write_image(tmp_path / f"file{pipe.suffix}", PIXELS, 2, 3)
+    before = files(tmp_path)
+    with os.fdopen(
+        os.open(pipe, os.O_RDWR), "rb", buffering=0
+    ) as reader:  # both ends, so that neither waits for the other
+        check_writable(tmp_path / name)
+        write_image(tmp_path / name, PIXELS, 2, 3)
+        expected = (tmp_path / f"file{pipe.suffix}").read_bytes()
+        assert reader.read(len(expected)) == expected
+    assert pipe.is_fifo()
+    assert files(tmp_path) == before
+
+
+def test_a_full_device_is_told(tmp_path: Path) -> None:
+    if not Path("/dev/full").exists():
+        pytest.skip("there is no /dev/full")
+    (tmp_path / "a.ppm").symlink_to("/dev/full")
+    with pytest.raises(ImageError, match=r"a\.ppm: no space left on device"):
+        write_image(tmp_path / "a.ppm", PIXELS, 2, 3)
+    assert not Path("/dev/full").is_file()
+
+
+def test_a_given_ending_counts_more_than_the_name(tmp_path: Path) -> None:
+    check_writable(tmp_path / "picture", ".ppm")
+    write_image(tmp_path / "picture", PIXELS, 2, 3, ".ppm")
+    assert (tmp_path / "picture").read_bytes().startswith(b"P6")
 
 
 def test_names_with_blanks_and_accents(tmp_path: Path) -> None:

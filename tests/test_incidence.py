@@ -64,6 +64,13 @@ def test_points_of_decimal_numbers_lie_on_spheres(size):
     assert not on_sphere(*scaled, 7.0 * size * (1 - 1e-15))
 
 
+def test_nothing_lies_on_a_sphere_that_is_smaller_than_roundings():
+    center = (0.0, 0.0, 1e20)
+    assert not on_sphere(center, center, 1.0)
+    assert not on_sphere((0.0, 0.0, 0.0), center, 1.0)
+    assert on_sphere((0.0, 0.0, 0.0), center, 1e20)
+
+
 def test_every_surface_is_found():
     rows = [(0.0, 1.0, 0.0, 0.0), (0.0, 0.0, 0.0, 1.0), (1.0, 0.0, 0.0, -1.0), (5.0, 0.0, 0.0, 4.0)]
     assert surfaces_at((1.0, 0.0, 0.0), rows, [False, True, False, True]) == [0, 1, 2, 3]

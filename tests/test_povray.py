@@ -15,7 +15,7 @@ from converter.scene.writer import write_scene
 from converter.to_mitsuba.export import ExportError
 from converter.to_povray.export import export_povray
 from converter.to_povray.finishes import finish, transmission
-from converter.to_povray.interiors import Relation, relation
+from converter.to_povray.interiors import Interior, Relation, interiors, relation
 from converter.to_povray.lights import fades
 from converter.to_povray.scale import scaled, suitable_scale
 from converter.to_povray.scene import povray_scene
@@ -165,6 +165,21 @@ def test_how_bodies_lie(small_scene: Scene, first: object, second: object, expec
     for shapes, meant in (((first, second), expected), ((second, first), mirrored.get(expected, expected))):
         scene = replace(small_scene, objects=tuple(Object(2, 3, shape) for shape in shapes))
         assert relation(scene, scene_needs(scene, Settings()), 0, 1) is meant
+
+
+def test_indices_of_bodies_without_bounds_multiply(small_scene: Scene) -> None:
+    """A ball and what is below y = 9, the camera in both; glass above that, of which only the second is known."""
+    ball, below = Sphere((0, 0, 0), 2), Polyhedron(((0, 1, 0, -9),))
+    above = Polyhedron(((10, -1, 0, 0), (-1, 0, 0, 1), (0, 0, 1, -1), (0, 0, -1, -1)))
+    scene = replace(
+        small_scene,
+        camera=replace(small_scene.camera, eye=(0.0, 0.0, 0.0)),
+        finishes=(Finish(0, 0, 0, 1, 0, 1, 0.5),),
+        objects=tuple(Object(2, 0, shape) for shape in (ball, above, below)),
+    )
+    found, overlaps = interiors(scene, scene_needs(scene, Settings()))
+    assert found == {0: Interior(0.5, True), 1: Interior(0.5, False), 2: Interior(0.25, True)}
+    assert overlaps == [(0, 1)]
 
 
 def test_scaling_by_powers_of_two_gives_the_same_text(textured: Scene) -> None:

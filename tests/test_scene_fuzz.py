@@ -5,9 +5,10 @@ from contextlib import suppress
 from dataclasses import replace
 from pathlib import Path
 
+from finite import assert_finite
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from test_corpus import SETTINGS, assert_finite
+from test_corpus import SETTINGS
 from test_scene_errors import FIGURE_1, TEXT
 
 from converter.images.texture import TextureError
@@ -86,7 +87,8 @@ def test_mutated_scenes_of_the_gallery_are_drawn_or_refused(file: Path, other: P
         return
     if not check_geometry(scene):
         with suppress(TextureError):  # of a name that is none any more
-            assert_finite(NativeRenderer().render(scene, replace(SETTINGS, max_depth=4)).pixels, scene)
+            limited = replace(SETTINGS, max_depth=4)
+            assert_finite(NativeRenderer().render(scene, limited).pixels, scene, limited)
 
 
 def check_verdict(text: str | bytes) -> None:

@@ -69,8 +69,8 @@ def _methods(text: str) -> "list[Method]":
 
 def run(arguments: argparse.Namespace) -> int:
     """Measure, draw, and tell."""
-    from converter.commands.files import check_target, replacing
     from converter.commands.json_out import check_json, write_json
+    from converter.files import check_target, replacing
     from converter.studies.chart_figure import ENDINGS
 
     out: Path = arguments.out

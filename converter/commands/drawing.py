@@ -1,5 +1,6 @@
 """From a scene file to an image file, as `raytrace` and `whitted render` do it."""
 
+import errno
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
@@ -22,20 +23,24 @@ def draw(
     quiet: bool = False,
     keep_partial: bool = False,
     method: "Method | None" = None,
+    ending: str | None = None,
 ) -> tuple[Rendering, dict[str, float]]:
     """Draw a scene into an image file, which appears whole or not at all; return the picture and seconds by stage.
 
     With the `method` that the renderer belongs to, regions are named in which it is known to fail. With
-    `keep_partial`, Ctrl-C writes what is finished before `Interrupted` goes on to the caller.
+    `keep_partial`, Ctrl-C writes what is finished before `Interrupted` goes on to the caller. `ending` chooses the
+    image's format, if `out` does not.
 
     Raises:
         SceneError: the scene is no scene.
-        OSError: the image cannot be written there; known before anything is drawn.
+        OSError: the image cannot be written there, or is the scene itself; known before anything is drawn.
         RendererUnavailable: the renderer does not run here.
         Interrupted: Ctrl-C while drawing.
 
     """
-    check_writable(out)
+    if out.exists() and scene_file.exists() and out.samefile(scene_file):
+        raise FileExistsError(errno.EEXIST, "this is the scene, which the picture would replace", str(out))
+    check_writable(out, ending)
     started = time.perf_counter()
     scene = load_with_notices(scene_file, settings, quiet, method)
     read = time.perf_counter()
@@ -44,14 +49,24 @@ def draw(
             rendering = renderer.render(scene, settings, progress)
         except Interrupted as stop:
             if keep_partial:
-                _write(stop.partial, out)
+                _write(stop.partial, out, ending)
                 say(f"{out}: only a part of the picture", quiet)
             raise
     drawn = time.perf_counter()
-    _write(rendering, out)
+    _write(rendering, out, ending)
+    _warn_of_nan(rendering, out, quiet)
     seconds = {"read": read - started, **rendering.seconds, "write": time.perf_counter() - drawn}
     return rendering, seconds
 
 
-def _write(rendering: Rendering, out: Path) -> None:
-    write_image(out, rendering.pixels, rendering.width, rendering.height)
+def _write(rendering: Rendering, out: Path, ending: str | None) -> None:
+    write_image(out, rendering.pixels, rendering.width, rendering.height, ending)
+
+
+def _warn_of_nan(rendering: Rendering, out: Path, quiet: bool) -> None:
+    """Say it where nothing less than a number's range kept a pixel from being one: most formats have black for it."""
+    from native_tracer import count_nan_pixels
+
+    if count := count_nan_pixels(rendering.pixels):
+        share = f"{count} of {rendering.width * rendering.height} pixels"
+        say(f"warning: {out}: {share} are no numbers (NaN): the colours there exceed all numbers", quiet)

@@ -1,10 +1,11 @@
 """How a program ends: its exit statuses, and errors told in a line instead of a traceback."""
 
 import os
+import signal
 import sys
 from collections.abc import Callable
 
-from converter.commands.interrupts import InterruptWatch
+from converter.commands.interrupts import InterruptWatch, Terminated, status_of
 
 OK = 0
 DISAGREE = 1
@@ -13,8 +14,6 @@ USAGE = 2
 """Wrong arguments, a scene or file that cannot be used: whatever the user can mend."""
 UNAVAILABLE = 3
 """A renderer does not run on this machine."""
-INTERRUPTED = 130
-"""Ctrl-C, as shells count it: 128 + SIGINT."""
 BROKEN_PIPE = 141
 """The reader of the output went away, as shells count it: 128 + SIGPIPE."""
 
@@ -40,7 +39,7 @@ def run(program: str, command: Callable[[], int]) -> int:
         if hasattr(stream, "reconfigure"):  # file names need not be UTF-8, nor the terminal
             stream.reconfigure(errors="backslashreplace")
     interrupted = f"{program}: interrupted"
-    watch = InterruptWatch(f"{interrupted}\n", INTERRUPTED)
+    watch = InterruptWatch(f"{interrupted}\n")
     try:
         with watch:
             status = command()
@@ -51,12 +50,15 @@ def run(program: str, command: Callable[[], int]) -> int:
         return ended.code if isinstance(ended.code, int) else OK
     except KeyboardInterrupt:
         tell(interrupted)
-        return INTERRUPTED
+        return status_of(signal.SIGINT)
+    except Terminated:
+        tell(interrupted)
+        return status_of(signal.SIGTERM)
     except BrokenPipeError:
         _discard_output()
         return BROKEN_PIPE
     except Exception as error:
-        told = (interrupted, INTERRUPTED) if watch.seen else _told(program, error)
+        told = (interrupted, status_of(watch.seen)) if watch.seen else _told(program, error)
         if told is None:
             raise
         message, status = told

@@ -1,8 +1,9 @@
-"""Ctrl-C where an exception would do harm, or be mistaken for another.
+"""Ctrl-C and SIGTERM where an exception would do harm, or be mistaken for another.
 
-Compiled modules do not bear a KeyboardInterrupt while they initialise: some abort the process, some go on half made and
-fail later. Nothing is worth saving at that time, so the process ends at once. Elsewhere Ctrl-C is what it always is,
-but is remembered, for Dr.Jit makes a RuntimeError of it while it traces a loop.
+Compiled modules do not bear an exception while they initialise: some abort the process, some go on half made and fail
+later. Nothing is worth saving at that time, so the process ends at once. Elsewhere Ctrl-C is what it always is, and
+SIGTERM an exception too, so that unfinished files go; but they are remembered, for Dr.Jit makes a RuntimeError of
+either while it traces a loop.
 """
 
 import os
@@ -12,37 +13,50 @@ from types import FrameType, TracebackType
 from typing import Any
 
 
-class InterruptWatch:
-    """Within it, Ctrl-C during an import writes `message` to stderr and ends the process with `status`.
+class Terminated(BaseException):
+    """SIGTERM, as KeyboardInterrupt is SIGINT."""
 
-    `seen` tells whether there was a Ctrl-C at all.
+
+_HANDLED = ((signal.SIGINT, signal.default_int_handler), (signal.SIGTERM, signal.SIG_DFL))
+"""Signals, and who handles them where nobody else does. Another handler is a larger program's business; a shell has
+SIGINT ignored in what runs in the background."""
+
+
+class InterruptWatch:
+    """Within it, Ctrl-C and SIGTERM during an import write `message` to stderr and end the process.
+
+    `seen` is the signal that came last, if any.
     """
 
-    def __init__(self, message: str, status: int) -> None:
-        self.seen = False
+    def __init__(self, message: str) -> None:
+        self.seen: int | None = None
         self._message = message
-        self._status = status
-        self._before: Any = None
+        self._before: dict[int, Any] = {}
 
     def __enter__(self) -> "InterruptWatch":
-        # Another handler is a larger program's business; a shell has SIGINT ignored in what runs in the background.
-        if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
-            with suppress(ValueError):  # not in the main thread, which alone gets signals
-                self._before = signal.signal(signal.SIGINT, self._interrupted)
+        for number, usual in _HANDLED:
+            if signal.getsignal(number) is usual:
+                with suppress(ValueError):  # not in the main thread, which alone gets signals
+                    self._before[number] = signal.signal(number, self._interrupted)
         return self
 
     def __exit__(
         self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
     ) -> None:
-        if self._before is not None:
-            signal.signal(signal.SIGINT, self._before)
+        for number, handler in self._before.items():
+            signal.signal(number, handler)
 
     def _interrupted(self, number: int, frame: FrameType | None) -> None:
         if _is_importing(frame):
             os.write(2, self._message.encode())
-            os._exit(self._status)
-        self.seen = True
-        raise KeyboardInterrupt
+            os._exit(status_of(number))
+        self.seen = number
+        raise KeyboardInterrupt if number == signal.SIGINT else Terminated
+
+
+def status_of(number: int) -> int:
+    """The exit status of a process that a signal has ended, as shells count it."""
+    return 128 + number
 
 
 def _is_importing(frame: FrameType | None) -> bool:

@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from converter.commands.files import check_target, replacing
+from converter.files import check_target, replacing
 
 
 def check_json(file: str | None) -> None:

@@ -59,15 +59,9 @@ def _draw(scene: "Path", out: "Path", settings: "Settings") -> None:
     from converter.images.write import COMMON_ENDINGS
     from converter.renderers.native import NativeRenderer
 
-    if out.suffix.lower() in (*COMMON_ENDINGS, ".jpeg", ".tiff"):
-        draw(NativeRenderer(), scene, out, settings)
-        return
-    # The statement asks for a PPM file, whatever its name; `write_image` goes by the ending.
-    if out.is_dir():
-        raise IsADirectoryError(None, "this is a folder", str(out))
-    named = out.with_name(f".{out.name}.ppm")
-    draw(NativeRenderer(), scene, named, settings)
-    named.replace(out)
+    # The statement asks for a PPM file, whatever its name.
+    known = out.suffix.lower() in (*COMMON_ENDINGS, ".jpeg", ".tiff")
+    draw(NativeRenderer(), scene, out, settings, ending=None if known else ".ppm")
 
 
 if __name__ == "__main__":

@@ -76,8 +76,8 @@ def _families(text: str) -> "list[Family]":
 
 def run(arguments: argparse.Namespace) -> int:
     """Try, draw, and tell."""
-    from converter.commands.files import check_target, replacing
     from converter.commands.json_out import check_json, write_json
+    from converter.files import check_target, replacing
     from converter.studies.chart_figure import ENDINGS
 
     if arguments.list:

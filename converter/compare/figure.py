@@ -8,6 +8,7 @@ from numpy.typing import NDArray
 
 from converter.compare.metrics import Pixels, absolute_difference
 from converter.compare.report import Report
+from converter.files import shown_name
 from converter.images.write import write_image
 
 SMALLEST_PANEL = 280
@@ -45,8 +46,8 @@ def draw_figure(report: Report, file: Path, amplification: float) -> None:
     difference[np.isnan(difference).any(axis=2)] = NOT_FINITE
     sheet = side_by_side(
         (
-            Panel(pictures.reference, pictures.reference_pixels),
-            Panel(pictures.test, pictures.test_pixels),
+            Panel(shown_name(pictures.reference), pictures.reference_pixels),
+            Panel(shown_name(pictures.test), pictures.test_pixels),
             Panel(f"difference x {amplification:g}", difference),
             Panel(f"FLIP, mean {report.flip_mean:.3g}", _magma(report.flip)),
         )

@@ -119,6 +119,8 @@ def _open_other(path: str, size: int) -> Any:
     """
     import OpenImageIO as oiio  # noqa: N813 - its own documentation's name
 
+    if os.fsencode(path).decode(errors="ignore") != path:
+        raise ValueError("its name or its folder's is not UTF-8, which only a PPM file's may be")
     hints = oiio.ImageSpec()
     hints.attribute("oiio:UnassociatedAlpha", 1)  # colours as they are, not multiplied by the alpha that is dropped
     hints.attribute("pnm:pfmflip", 1)  # bottom row first, as PFM files have it

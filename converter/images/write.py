@@ -9,6 +9,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
+from converter.files import is_special, replacing, temporary_name
+
 COMMON_ENDINGS = (".ppm", ".png", ".exr", ".jpg", ".tif", ".hdr", ".pfm", ".bmp", ".tga", ".webp")
 """Endings to suggest; OpenImageIO knows more."""
 FLOAT_ENDINGS = frozenset({".exr", ".hdr", ".pfm", ".tif", ".tiff"})
@@ -21,35 +23,41 @@ class ImageError(OSError):
     """A picture cannot be written; the message names the file and says why."""
 
 
-def check_writable(path: str | Path) -> None:
+def check_writable(path: str | Path, ending: str | None = None) -> None:
     """See that `write_image` could write `path`, so that no one waits for a picture that cannot be saved.
 
     Raises:
-        ImageError: its ending is unknown, its folder missing or not writable, or it is a folder itself.
+        ImageError: the ending is unknown, its folder missing or not writable, or it is a folder itself.
     """
     path = Path(path)
-    _check_ending(path)
+    ending = _known(path, ending)
     try:
-        temporary = _temporary(_target(path), path.suffix)
+        target = _target(path)
+        if is_special(target):
+            return
+        temporary = temporary_name(target, ending)
         try:
             temporary.touch(exist_ok=False)
         finally:
-            _remove(temporary)
+            with suppress(OSError):
+                temporary.unlink()
     except OSError as error:
         raise ImageError(f"{path}: {_reason(error, path)}") from error
 
 
-def write_image(path: str | Path, pixels: Any, width: int, height: int) -> None:
-    """Write a picture; the ending of `path` chooses the format.
+def write_image(path: str | Path, pixels: Any, width: int, height: int, ending: str | None = None) -> None:
+    """Write a picture.
 
     Formats of 8 bits hold round(255 c), c clamped to 0..1 and NaN as 0, with no gamma; those of `FLOAT_ENDINGS` hold c.
-    The file appears as a whole or not at all, whatever happens; an older one is replaced.
+    The file appears as a whole or not at all, whatever happens; an older one is replaced. Into what is no file, such as
+    a pipe or /dev/null, the picture is copied.
 
     Args:
         path: the file; if it is a link, what it points to is written.
         pixels: buffer of height x width x 3 float32, linear RGB, row 0 on top.
         width: columns.
         height: rows.
+        ending: chooses the format; that of `path`, if not given.
 
     Raises:
         ImageError: it cannot be written.
@@ -60,18 +68,11 @@ def write_image(path: str | Path, pixels: Any, width: int, height: int) -> None:
     if values.format != "f" or not values.c_contiguous or values.nbytes != 12 * width * height or width < 1:
         expected = f"{width} x {height} pixels of three float32, one after the other"
         raise ValueError(f"expected {expected}, found {values.nbytes} bytes of format {values.format!r}")
-    _check_ending(path)
+    ending = _known(path, ending)
+    write = _write_ppm if ending == ".ppm" else _write_other
     try:
-        target = _target(path)
-        temporary = _temporary(target, path.suffix)
-        try:
-            if path.suffix.lower() == ".ppm":
-                _write_ppm(temporary, values, width, height)
-            else:
-                _write_other(temporary, values, width, height)
-            temporary.replace(target)
-        finally:  # an interrupt too
-            _remove(temporary)
+        with replacing(_target(path), ending) as temporary:
+            write(temporary, values, width, height)
     except OSError as error:
         raise ImageError(f"{path}: {_reason(error, path)}") from error
 
@@ -97,7 +98,7 @@ def _write_other(path: Path, values: memoryview, width: int, height: int) -> Non
     with path.open("xb") as file:
         os.posix_fallocate(file.fileno(), 0, data.nbytes + 65536)
         file.truncate(0)
-    output = oiio.ImageOutput.create(str(path))
+    output = oiio.ImageOutput.create(_utf8(path))
     if output is None:
         raise OSError(oiio.geterror())
     done = output.open(str(path), oiio.ImageSpec(width, height, 3, format_))
@@ -108,16 +109,25 @@ def _write_other(path: Path, values: memoryview, width: int, height: int) -> Non
         raise OSError(complaints[0] if complaints else "OpenImageIO does not say why")
 
 
-def _check_ending(path: Path) -> None:
-    """Raise `ImageError` for a format that nobody writes."""
-    ending = path.suffix.lower()
+def _utf8(path: Path) -> str:
+    """A path as OpenImageIO takes it; `ImageError` where its bytes are no UTF-8."""
+    try:
+        return str(path).encode().decode()
+    except UnicodeEncodeError as error:
+        told = f"{path.suffix} files need folders whose names are UTF-8, which PPM files do not"
+        raise ImageError(told) from error
+
+
+def _known(path: Path, given: str | None) -> str:
+    """The given ending, else that of `path`; `ImageError` for a format that nobody writes."""
+    ending = (path.suffix if given is None else given).lower()
     if ending == ".ppm":
-        return
+        return ending
     if ending and ending not in _NO_FILES:
         import OpenImageIO as oiio  # noqa: N813
 
         if oiio.ImageOutput.create(f"picture{ending}") is not None:
-            return
+            return ending
         oiio.geterror()  # clears it
     found = f"unknown picture format {ending!r}" if ending else "no ending that says which picture format is meant"
     raise ImageError(f"{path}: {found}; use one of {', '.join(COMMON_ENDINGS)}")
@@ -136,17 +146,9 @@ def _target(path: Path) -> Path:
     return target
 
 
-def _temporary(target: Path, ending: str) -> Path:
-    """A new name beside `target`, so on the same file system, with the ending that tells the format."""
-    return target.with_name(f".whitted-{os.getpid()}-{os.urandom(4).hex()}{ending}")
-
-
-def _remove(temporary: Path) -> None:
-    with suppress(OSError):  # it was never made, or is already in its place
-        temporary.unlink()
-
-
 def _reason(error: OSError, path: Path) -> str:
+    if isinstance(error, ImageError):
+        return str(error)
     if isinstance(error, FileNotFoundError):
         return f"there is no folder {str(path.parent)!r}"
     if isinstance(error, NotADirectoryError):

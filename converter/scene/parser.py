@@ -6,6 +6,7 @@
 Reading is first by words (`sections`), as the format says, and again by lines (`lines`) where that fails, to tell why.
 """
 
+import errno
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -22,6 +23,9 @@ from converter.scene.tokens import Words, decode, number, whole
 _Read = TypeVar("_Read")
 MOST_PROBLEMS = 20
 """Problems that are told; who has more mends these first."""
+BLOCK = 1 << 16
+LONGEST = 1 << 28
+"""Bytes of a file, far more than whose words find room: a pipe may never end."""
 
 
 def parse_scene(text: str | bytes, file: Path | None = None) -> Scene:
@@ -58,10 +62,20 @@ def load_scene(path: str | Path) -> Scene:
 
 
 def _read_bytes(file: Path) -> bytes:
-    """What is in a file; of what is no text only the beginning, since there are devices that never end."""
+    """What is in a file; of what is no text only the beginning, since there are devices that never end.
+
+    Raises:
+        OSError: it cannot be read, or goes on for longer than any scene.
+    """
+    blocks: list[bytes] = []
     with file.open("rb") as opened:
-        start = opened.read(1 << 16)
-        return start if b"\0" in start else start + opened.read()
+        while block := opened.read(BLOCK):
+            blocks.append(block)
+            if b"\0" in block:
+                break
+            if len(blocks) * BLOCK > LONGEST:
+                raise OSError(errno.EFBIG, "this is longer than any scene")
+    return b"".join(blocks)
 
 
 def _read_text(text: Words) -> tuple[Scene | None, Reader]:

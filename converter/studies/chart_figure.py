@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from converter.files import shown_name
 from converter.renderers.methods import Family
 from converter.studies.chart_report import about_reference
 from converter.studies.labels import Box, Crowd, leader, place_labels
@@ -138,7 +139,8 @@ def _title(study: SceneStudy) -> str:
     runs = max((len(m.runs) for m in study.drawn), default=0)
     size = f"{settings.width} x {settings.height} pixels"
     reference = about_reference(study).partition(";")[0]
-    return f"{study.file.name}, {size}; medians of up to {runs} runs, bars: quartiles\nerrors against {reference}"
+    name = shown_name(study.file.name)
+    return f"{name}, {size}; medians of up to {runs} runs, bars: quartiles\nerrors against {reference}"
 
 
 def _machine() -> str:

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
 
+from converter.files import shown_name
 from converter.studies.machine import machine, versions
 from converter.studies.measure import Measured, SceneStudy
 from converter.studies.pareto import pareto_front
@@ -110,7 +111,7 @@ def _record(study: SceneStudy, m: Measured) -> dict[str, Any]:
     """Every figure of a method on a scene, by name; of a skipped one the figures are None."""
     settings, floor = m.method.settings(study.settings), study.reference.floor
     return {
-        "scene": str(study.file),
+        "scene": shown_name(study.file),
         "width": settings.width,
         "height": settings.height,
         "method": m.method.name,
@@ -153,7 +154,7 @@ def to_json(studies: Sequence[SceneStudy]) -> dict[str, Any]:
         "versions": versions(),
         "scenes": [
             {
-                "scene": str(study.file),
+                "scene": shown_name(study.file),
                 "settings": asdict(study.settings),
                 "reference": {
                     "precision": study.reference.precision,

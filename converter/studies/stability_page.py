@@ -3,7 +3,7 @@
 from collections.abc import Sequence
 from pathlib import Path
 
-from converter.commands.files import replacing
+from converter.files import replacing
 from converter.studies.stability import FamilyStudy
 from converter.studies.stability_figure import draw_stability
 from converter.studies.stability_pictures import Failure, draw_failures, failures_to_show

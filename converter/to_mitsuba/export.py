@@ -1,7 +1,9 @@
 """Scene descriptions into a folder that Mitsuba loads: scene.xml, and meshes, textures and exact surfaces beside it."""
 
 import math
+from contextlib import suppress
 from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 from xml.etree import ElementTree
 
@@ -25,7 +27,7 @@ ELEMENTS = {
 }
 """The kind of each plugin that descriptions name, as scene files mark it."""
 
-README = """\
+README = b"""\
 A Mitsuba 3 scene, written by `whitted convert`. Its plugins come with the Python package `whitted`. To render it:
 python -c "import mitsuba_plugins as p, mitsuba as mi; p.set_variant(); \\
 mi.util.write_bitmap('out.exr', mi.render(mi.load_file('scene.xml')))"
@@ -46,14 +48,33 @@ def export_scene(scene: Scene, settings: Settings, folder: Path) -> list[Path]:
     A scene of more than `MOST_SHAPES` objects has exact surfaces only, which the `whitted` integrator draws, and no
     shapes that other integrators see.
 
+    The files appear when all of them are written; an earlier export stays until then.
+
     Raises:
         ExportError: the folder holds something that this function did not write.
         TextureError, PolyhedronError, OSError: as `scene_description` and the file system have it.
     """
     description = scene_description(scene, settings, with_shapes=len(scene.objects) <= MOST_SHAPES)
-    _check_folder(folder)
-    (folder / "meshes").mkdir(parents=True, exist_ok=True)
-    (folder / "textures").mkdir(exist_ok=True)
+    earlier = _earlier_files(folder)
+    is_new = not folder.exists()
+    folder.mkdir(parents=True, exist_ok=True)
+    try:
+        with TemporaryDirectory(prefix=".whitted-", dir=folder) as staging:
+            written = _write(description, Path(staging))
+            for path in earlier:
+                path.unlink()
+            return [_moved(path, Path(staging), folder) for path in written]
+    finally:
+        leftovers = [folder / "meshes", folder / "textures", *([folder] if is_new else [])]
+        for empty in leftovers:
+            with suppress(OSError):  # it is not empty, or was never there
+                empty.rmdir()
+
+
+def _write(description: dict[str, Any], folder: Path) -> list[Path]:
+    """Write a description into an empty folder; return the files, scene.xml first."""
+    (folder / "meshes").mkdir()
+    (folder / "textures").mkdir()
     files = [folder / "scene.xml"]
     root = ElementTree.Element("scene", version="3.0.0")
     for name, element in description.items():
@@ -65,27 +86,30 @@ def export_scene(scene: Scene, settings: Settings, folder: Path) -> list[Path]:
     ElementTree.indent(root)
     ElementTree.ElementTree(root).write(files[0], encoding="utf-8", xml_declaration=True)
     files.append(folder / "README.txt")
-    files[-1].write_text(README, encoding="utf-8")
-    for subfolder in (folder / "meshes", folder / "textures"):
-        if not any(subfolder.iterdir()):
-            subfolder.rmdir()
+    files[-1].write_bytes(README)
     return files
 
 
-def _check_folder(folder: Path) -> None:
-    """A folder that is new, empty, or holds an earlier export will do; that one's files are removed."""
+def _moved(path: Path, start: Path, end: Path) -> Path:
+    """Move a file from somewhere in the folder `start` to the same place in `end`."""
+    target = end / path.relative_to(start)
+    target.parent.mkdir(exist_ok=True)
+    return path.replace(target)
+
+
+def _earlier_files(folder: Path) -> list[Path]:
+    """The files of an earlier export; a folder that is new, empty, or holds no others will do."""
     if not folder.exists():
-        return
+        return []
     if not folder.is_dir():
         raise ExportError(f"{folder} is a file: expected a folder to write the scene to")
     ours = [*folder.glob("meshes/object_*.ply"), *folder.glob("textures/pigment_*.exr")]
     ours += [folder / name for name in ("scene.xml", "geometry.json", "README.txt") if (folder / name).exists()]
     others = [path for path in folder.rglob("*") if path.is_file() and path not in ours]
     readme = folder / "README.txt"
-    if others or (ours and not (readme.exists() and readme.read_text(encoding="utf-8") == README)):
+    if others or (ours and not (readme.is_file() and readme.read_bytes() == README)):
         raise ExportError(f"{folder} holds files that are not of an exported scene: name a new or empty folder")
-    for path in ours:
-        path.unlink()
+    return ours
 
 
 def _with_files(name: str, element: dict[str, Any], folder: Path) -> tuple[dict[str, Any], list[Path]]:

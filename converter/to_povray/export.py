@@ -1,9 +1,9 @@
 """Scenes in POV-Ray's language into files: the scene, and images beside it."""
 
-import os
 import re
 from pathlib import Path
 
+from converter.files import is_special, replacing
 from converter.scene.model import Scene
 from converter.scene.settings import Settings
 from converter.to_mitsuba.export import ExportError
@@ -27,9 +27,9 @@ def export_povray(scene: Scene, settings: Settings, file: Path) -> tuple[PovrayS
     _check(file, MARK.encode())
     for image in images:
         _check(image, IMAGE_MARK)
-    for image, data in images.items():
-        _write(image, data)
-    _write(file, exported.text.encode())
+    for target, data in (*images.items(), (file, exported.text.encode())):
+        with replacing(target) as temporary:
+            temporary.write_bytes(data)
     for left in file.parent.glob(f"{name}_pigment_*.ppm"):  # of an earlier export
         if left not in images and _is_ours(left, IMAGE_MARK):
             left.unlink()
@@ -39,20 +39,10 @@ def export_povray(scene: Scene, settings: Settings, file: Path) -> tuple[PovrayS
 def _check(file: Path, mark: bytes) -> None:
     if file.is_dir():
         raise ExportError(f"{file} is a folder: expected a file to write the scene to")
-    if file.exists() and not _is_ours(file, mark):
+    if file.exists() and (is_special(file) or not _is_ours(file, mark)):
         raise ExportError(f"{file} is not of an exported scene: name another file")
 
 
 def _is_ours(file: Path, mark: bytes) -> bool:
     with file.open("rb") as opened:
         return mark in opened.read(100)
-
-
-def _write(file: Path, data: bytes) -> None:
-    """Write a file, which appears whole or not at all."""
-    temporary = file.with_name(f".whitted-{os.getpid()}-{os.urandom(4).hex()}")
-    try:
-        temporary.write_bytes(data)
-        temporary.replace(file)
-    finally:  # an interrupt too
-        temporary.unlink(missing_ok=True)

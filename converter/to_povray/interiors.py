@@ -52,11 +52,30 @@ def interiors(scene: Scene, needs: SceneNeeds) -> tuple[dict[int, Interior], lis
             case (Relation.OVERLAP, _, _):
                 overlaps.append((i, j))
     iors: dict[int, float] = {}
-    for i in sorted(bodies, key=lambda body: len(around[body])):
+    for i in _outermost_first(around):
         own = needs.etas[scene.objects[i].finish]
-        innermost = max(around[i], key=lambda body: len(around[body]), default=None)
+        innermost = max(around[i] & iors.keys(), key=lambda body: len(around[body]), default=None)
         iors[i] = (own if inverse[i] else 1 / own) * (1.0 if innermost is None else iors[innermost])
     return {i: Interior(iors[i], inverse[i]) for i in bodies}, overlaps
+
+
+def _outermost_first(around: dict[int, set[int]]) -> list[int]:
+    """The bodies, each after those around it; where roundings put one around itself by way of others, somewhere.
+
+    Not by the number of those around it alone: of bodies without bounds it is not always known that they are.
+    """
+    ordered: dict[int, None] = {}
+    waiting = sorted(around, key=lambda body: len(around[body]), reverse=True)
+    begun: set[int] = set()
+    while waiting:
+        body = waiting[-1]
+        before = [other for other in sorted(around[body]) if other not in begun]
+        if body in begun or not before:
+            ordered[waiting.pop()] = None
+        else:
+            waiting.extend(before)
+        begun.add(body)
+    return list(ordered)
 
 
 def relation(scene: Scene, needs: SceneNeeds, i: int, j: int) -> Relation:

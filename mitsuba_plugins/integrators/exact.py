@@ -34,11 +34,16 @@ class Records:
         row = self.row(record, active)
         return dr.gather(mi.Bool, self._is_sphere, index, active), self._types.Vector3(row.xyz), row.w
 
-    def surface_point(self, index: Any, record: Any, p: Any, active: Any) -> tuple[Any, Any]:
-        """The point of a surface nearest to `p`, along its normal, and the outward unit normal there."""
-        sphere, v, w = self.surface(index, record, active)
+    def surface_point(self, surface: tuple[Any, Any, Any], p: Any, along: Any) -> tuple[Any, Any]:
+        """The point of what `surface` returned nearest to `p`, along its normal, and the outward unit normal there.
+
+        That is `along` where `p` is a sphere's centre, or so near that the square of its distance is 0: of a sphere
+        that is too small beside its distance from where the ray starts, no more is known of a point on it.
+        """
+        sphere, v, w = surface
         arm = self._types.Vector3(p) - v
-        n = dr.select(sphere, arm / dr.norm(arm), v)
+        length = dr.norm(arm)
+        n = dr.select(sphere, dr.select(length == 0, along, arm / length), v)
         on_sphere = self._types.Point3(v) + n * w
         on_plane = p - n * (dr.dot(n, p) + w)
         return self._types.Point3(dr.select(sphere, on_sphere, on_plane)), self._types.Vector3(n)
@@ -58,7 +63,10 @@ class ExactSurfaces:
         """The first surface that a ray meets, the point moved onto it to shed the error along the normal."""
         t, index, record = self.find_closest(ray, active)
         valid = active & (index != NOTHING)
-        p, n = self.records.surface_point(index, record, ray.o + t * ray.d, valid)
+        surface = self.records.surface(index, record, valid)
+        _, center, radius = surface
+        within = (index == ray.object) | (dr.squared_norm(ray.o - center) < dr.square(radius))
+        p, n = self.records.surface_point(surface, ray.o + t * ray.d, dr.select(within, ray.d, -ray.d))
         inside = dr.select(index == ray.object, ray.inside, dr.dot(n, ray.d) > 0)
         return Hit(valid, t, index, record, p, n, inside)
 

@@ -92,7 +92,8 @@ class MeshSurfaces(ExactSurfaces):
     def _start(self, ray: Ray, active: Any) -> Any:
         """Origin for the single-precision ray, off the surface that `ray` starts on, on the side it travels on."""
         leaves = active & (ray.object != NOTHING)
-        _, n = self.records.surface_point(ray.object, ray.record, ray.o, leaves)
+        surface = self.records.surface(ray.object, ray.record, leaves)
+        _, n = self.records.surface_point(surface, ray.o, dr.select(ray.inside, -ray.d, ray.d))
         reach = dr.maximum(ray_reach(ray), dr.gather(self._types.Float, self._extent, ray.object, leaves))
         offset = reach * OFFSET + 2 * dr.gather(self._types.Float, self._deviation, ray.object, leaves)
         return dr.select(leaves, ray.o + dr.select(ray.inside, -n, n) * offset, ray.o)

@@ -120,9 +120,10 @@ def refract(d: Any, n: Any, eta: Any) -> tuple[Any, Any]:
     cosine = -dr.dot(d, n)
     # 1 - eta^2 (1 - cosine^2), without the difference of nearly equal numbers where eta is nearly 1.
     cosine2 = (1 - eta) * (1 + eta) + dr.square(eta * cosine)
-    total = cosine2 < 0
-    through = unit(d * eta + n * (eta * cosine - dr.sqrt(dr.maximum(cosine2, 0))))
-    return dr.select(total, reflect(d, n), through), total
+    through = d * eta + n * (eta * cosine - dr.sqrt(dr.maximum(cosine2, 0)))
+    length = dr.norm(through)
+    total = ~((cosine2 >= 0) & (length > 0))  # of a ratio beyond all measure these may be no numbers, or 0
+    return dr.select(total, reflect(d, n), through / length), total
 
 
 def power(base: Any, exponent: Any) -> Any:

@@ -191,11 +191,13 @@ class Whitted(mi.SamplingIntegrator):
         facing = active & (cosine > 0) & ~self._light_contacts.grazes(index, hit.record, active)
         blocker = self._tracer.blocker(hit, to_light, distance, index, facing)
         attenuation = a + distance * (b + distance * c)
-        irradiance = (emission / mi.Float(attenuation)) & facing & (blocker == NOTHING)
-        diffuse = irradiance * color * (finish.kd * mi.Float(cosine))
+        # Masked at the end: a light at the hit itself has no direction, and nothing times no number is no number.
+        lit = facing & (blocker == NOTHING)
+        irradiance = emission / mi.Float(attenuation)
+        diffuse = (irradiance * color * (finish.kd * mi.Float(cosine))) & lit
         specular = mi.Color3f(0)
         if self.highlights:
-            specular = irradiance * (finish.ks * self._highlight(ray, n, to_light, finish.alpha))
+            specular = (irradiance * (finish.ks * self._highlight(ray, n, to_light, finish.alpha))) & lit
         return Illumination(cosine, attenuation, blocker, diffuse, specular)
 
     def _highlight(self, ray: Ray, n, to_light, alpha):

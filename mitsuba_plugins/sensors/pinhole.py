@@ -52,7 +52,7 @@ class Pinhole(mi.Sensor):
         """
         # Opaque, so that pictures of all sizes share one kernel.
         width, height = (dr.opaque(mi.Float64, size) for size in self.film().size())
-        forward = _unit(_in_range(self.look_at - self.eye))
+        forward = _unit(_in_range(_direction(self.eye, self.look_at)))
         right = _unit(_in_range(dr.cross(forward, _in_range(self.up))))
         upward = dr.cross(right, forward)
         half_height = dr.tan(dr.deg2rad(self.fovy) * 0.5)
@@ -82,6 +82,12 @@ class Pinhole(mi.Sensor):
 
     def to_string(self):
         return f"Pinhole[eye={self.eye}, look_at={self.look_at}, up={self.up}, fovy={self.fovy}]"
+
+
+def _direction(start, end):
+    """Along the difference of two points: half of it where no number holds it."""
+    whole = end - start
+    return dr.select(dr.all(dr.isfinite(whole)), whole, end / 2 - start / 2)
 
 
 def _in_range(v):

@@ -191,6 +191,18 @@ nb::dict trace_pixel(const SceneDescription& scene, int width, int height, int x
     return result;
 }
 
+// ---- Pixels -------------------------------------------------------------------------------------------------------
+
+using Pixels = nb::ndarray<const float, nb::c_contig, nb::device::cpu>;
+
+std::size_t count_nan_pixels(const Pixels& pixels) {
+    std::size_t count = 0;
+    for (const float* pixel = pixels.data(); pixel != pixels.data() + pixels.size() / 3 * 3; pixel += 3) {
+        count += std::isnan(pixel[0]) || std::isnan(pixel[1]) || std::isnan(pixel[2]) ? 1 : 0;
+    }
+    return count;
+}
+
 // ---- Bytes --------------------------------------------------------------------------------------------------------
 
 // round(255 c) with c clamped to 0..1, halves up; a NaN is black. In double, where 255 c is exact. Block by block, so
@@ -211,7 +223,7 @@ void quantize(const float* values, std::size_t count, std::uint8_t* bytes) {
     }
 }
 
-nb::bytes quantized(const nb::ndarray<const float, nb::c_contig, nb::device::cpu>& pixels) {
+nb::bytes quantized(const Pixels& pixels) {
     const auto result =
         nb::steal<nb::bytes>(PyBytes_FromStringAndSize(nullptr, static_cast<Py_ssize_t>(pixels.size())));
     if (!result.is_valid()) {
@@ -260,6 +272,8 @@ void bind_render(nb::module_& module) {
     module.def("trace_pixel", &trace_pixel, "scene"_a, "width"_a, "height"_a, "x"_a, "y"_a, nb::kw_only(),
                "samples"_a = 1, "corner"_a = true, "blinn"_a = false, "cutoff"_a, "max_depth"_a,
                "precision"_a = "double", "search"_a = "auto", "The rays of one pixel as nested dictionaries.");
+    module.def("count_nan_pixels", &count_nan_pixels, "pixels"_a,
+               "How many pixels of a float32 buffer, three numbers each, have a NaN among them.");
     module.def("quantize", &quantized, "pixels"_a,
                "8-bit RGB of a float32 buffer: round(255 c), c clamped to 0..1, a NaN black.");
 }

@@ -16,8 +16,16 @@ Vector<Real> vector_of(const Triple& v) {
     return {static_cast<Real>(v[0]), static_cast<Real>(v[1]), static_cast<Real>(v[2])};
 }
 
-// In double, before any of the two is rounded.
-inline Triple difference(const Triple& a, const Triple& b) { return {a[0] - b[0], a[1] - b[1], a[2] - b[2]}; }
+// Along the difference of two points, in double, before any of the two is rounded: half of it where no number holds it.
+inline Triple direction(const Triple& from, const Triple& to) {
+    const auto scaled = [&](double factor) -> Triple {
+        return {factor * to[0] - factor * from[0], factor * to[1] - factor * from[1],
+                factor * to[2] - factor * from[2]};
+    };
+    const Triple whole = scaled(1);
+    const bool holds = std::isfinite(whole[0]) && std::isfinite(whole[1]) && std::isfinite(whole[2]);
+    return holds ? whole : scaled(0.5);
+}
 
 // The same direction at a length whose square neither overflows nor vanishes, in float too; a power of two times `v`,
 // so that no digit is lost.
@@ -35,7 +43,7 @@ class Camera {
  public:
     Camera(const CameraDescription& camera, int width, int height)
         : eye_(vector_of<Real>(camera.eye)),
-          forward_(normalize(vector_of<Real>(in_range(difference(camera.look_at, camera.eye))))),
+          forward_(normalize(vector_of<Real>(in_range(direction(camera.eye, camera.look_at))))),
           right_(normalize(cross(forward_, vector_of<Real>(in_range(camera.up))))),
           up_(cross(right_, forward_)),
           width_(static_cast<Real>(width)),

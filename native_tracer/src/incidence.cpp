@@ -37,7 +37,9 @@ bool lies_on(const SphereDescription& sphere, const Triple& point) {
     const Triple& center = sphere.center;
     const Real distance =
         std::hypot(Real(point[0]) - center[0], Real(point[1]) - center[1], Real(point[2]) - center[2]);
-    return std::abs(distance - sphere.radius) <= rounding * (length(point) + length(center) + sphere.radius);
+    const Real error = rounding * (length(point) + length(center) + sphere.radius);
+    // Of a sphere that is smaller than the roundings of where it is, nothing is known.
+    return std::abs(distance - sphere.radius) <= error && error < sphere.radius / 2;
 }
 
 bool lies_on(const Quadruple& plane, const Triple& point) {

@@ -322,7 +322,7 @@ std::vector<Contact<Real>> Scene<Real>::contacts_of(const SceneDescription& desc
         const auto& shape = description.objects[i].shape;
         if (const auto* sphere = std::get_if<SphereDescription>(&shape)) {
             if (lies_on(*sphere, point)) {
-                const Vector<Real> arm = vector_of<Real>(in_range(difference(point, sphere->center)));
+                const Vector<Real> arm = vector_of<Real>(in_range(direction(sphere->center, point)));
                 contacts.push_back({object, patch, normalize(arm), true});
             }
         } else {

@@ -131,6 +131,8 @@ template <typename Real, typename Observer>
 Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const Hits<Real>& hits) const {
     const Vector<L> p = rays.origin + hits.t * rays.direction;
     const Mask<Real> hit = hits.object >= 0;
+    const L zero = Real(0);
+    const L one = Real(1);
 
     // Neighbouring rays mostly hit the same patch: then there is nothing to select.
     Surface<Real> result, another;
@@ -145,7 +147,16 @@ Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const H
         const Vector<L> anchor(patch.anchor);
         const L size = patch.size;
         if (patch.round) {
-            surface.outward = normalize(p - anchor);
+            const Vector<L> arm = p - anchor;
+            const L length2 = dot(arm, arm);
+            surface.outward = arm * (one / sqrt(length2));
+            // Of a sphere that is too small beside the distance travelled, the point is the centre itself, or so near
+            // that its square is 0. The normal may then be any that the ray can meet: it is taken along the ray.
+            const Mask<Real> lost = length2 <= zero;
+            if (any(lost)) [[unlikely]] {
+                const Vector<L> along = select(hits.inside, rays.direction, -rays.direction);
+                surface.outward = select(lost, along, surface.outward);
+            }
             surface.point = anchor + size * surface.outward;
         } else {
             surface.outward = anchor;
@@ -260,10 +271,11 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
         const L eta = select(hits.inside, one / surface.eta, surface.eta);
         // 1 - eta^2 (1 - cosine^2), without the difference of nearly equal numbers where eta is nearly 1.
         const L cosine2 = (one - eta) * (one + eta) + eta * cosine * (eta * cosine);
-        const Mask<Real> total = cosine2 < zero;
-        const Vector<L> refracted =
-            normalize(eta * direction + (eta * cosine - sqrt(max(cosine2, zero))) * surface.normal);
-        bent = select(total, mirrored, refracted);
+        const Vector<L> refracted = eta * direction + (eta * cosine - sqrt(max(cosine2, zero))) * surface.normal;
+        const L length2 = dot(refracted, refracted);
+        // Of a ratio beyond all measure these may be no numbers, or 0.
+        const Mask<Real> total = ~((cosine2 >= zero) & (length2 > zero));
+        bent = select(total, mirrored, refracted * (one / sqrt(length2)));
         bent_inside = select(total, hits.inside, ~hits.inside);
         observer_.total_reflection(group, transmits & total);
     }
