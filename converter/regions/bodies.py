@@ -53,6 +53,12 @@ def _large(s: Situation, limit: float) -> Iterator[Finding]:
         yield _object(s, i, f"is {far[i]:.2g} from the origin (more than {1 / limit:.2g}{more})")
 
 
+def _small(s: Situation, limit: float) -> Iterator[Finding]:
+    for k, more in worst(s.bodies.radius, limit):
+        text = f"has a radius of {s.bodies.radius[k]:.2g} (less than {limit:.2g}{more})"
+        yield _object(s, s.bodies.object[k], text)
+
+
 def _thin_glass(s: Situation, limit: float) -> Iterator[Finding]:
     shares = np.full(len(s.scene.objects), np.inf)
     for i, o in enumerate(s.scene.objects):
@@ -87,6 +93,11 @@ REGIONS = (
     ),
     Region(("distance",), {"float": 1e-5, "offset": 1e-3, "ulp": 1e-2}, _far_from_camera),
     Region(("huge",), {"float": 1e-5, "mesh": 1e-3, "offset": 1e-3, "ulp": 1.0}, _beside_smaller),
-    Region(("size", "light-on-floor", "light-on-ball"), {"mesh": 5e-10, "offset": 1e-5, "ulp": 1e-5}, _large),
+    Region(
+        ("size", "light-on-floor", "light-on-ball"),
+        {"double": 1e-151, "float": 1e-18, "mesh": 5e-10, "offset": 1e-5, "ulp": 1e-5},
+        _large,
+    ),
+    Region(("size",), {"float": 1e-17, "mesh": 1e-13}, _small),
     Region(("slivers",), {"float": 2e-6, "mesh": 2e-5}, _thin_glass),
 )

@@ -5,6 +5,7 @@ its box is missed. There is one such order for every octant of directions, in wh
 first. Smits, Efficiency Issues for Ray Tracing, Journal of Graphics Tools 3(2), 1998.
 """
 
+import math
 from typing import Any
 
 import drjit as dr
@@ -35,12 +36,14 @@ class BvhSurfaces(ExactSurfaces):
     def __init__(self, types: Real, surfaces: list[Surface], records: Records, contacts: LightContacts) -> None:
         super().__init__(records, contacts)
         self._types = types
-        self._nodes, self._node_count = _nodes(surfaces)
+        scale = _scale(surfaces)
+        self._scale = types.Float(scale)
+        self._nodes, self._node_count = _nodes(surfaces, scale)
         self._any_sphere = any(surface.sphere is not None for surface in surfaces)
         self._any_polyhedron = any(surface.sphere is None for surface in surfaces)
         self._first = column(mi.UInt32, records.first)
         self._count = column(mi.UInt32, [len(surface.planes) for surface in surfaces])
-        dr.make_opaque(self._node_count)
+        dr.make_opaque(self._node_count, self._scale)
 
     def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any]:
         """Distance (infinite for none), object (NOTHING for none) and record of the first hit."""
@@ -57,11 +60,12 @@ class BvhSurfaces(ExactSurfaces):
         t_best = dr.zeros(self._types.Float, width) + distance
         object_best = dr.full(mi.UInt32, NOTHING, width)
         record_best = dr.zeros(mi.UInt32, width)
-        farthest = mi.Float(t_best) * (1 + SLACK)
+        farthest = mi.Float(t_best * self._scale) * (1 + SLACK)
         # The origin as a sum of two single-precision numbers, so that differences to it are wrong by a share of
         # themselves and no more.
-        origin = mi.Vector3f(ray.o)
-        remainder = mi.Vector3f(ray.o - self._types.Point3(origin))
+        scaled = ray.o * self._scale
+        origin = mi.Vector3f(scaled)
+        remainder = mi.Vector3f(scaled - self._types.Point3(origin))
         slope = 1 / mi.Vector3f(ray.d)  # dr.rcp is an approximation of fewer digits
         start = _octant(ray.d) * self._node_count
         node = mi.UInt32(start)
@@ -81,7 +85,7 @@ class BvhSurfaces(ExactSurfaces):
                 t_best = dr.select(closer, t, t_best)
                 object_best = dr.select(closer, index, object_best)
                 record_best = dr.select(closer, record, record_best)
-                farthest = mi.Float(t_best) * (1 + SLACK)
+                farthest = mi.Float(t_best * self._scale) * (1 + SLACK)
             if dr.hint(light is not None, mode="scalar"):
                 searching &= object_best == NOTHING
             # All rays walk until each is at a leaf, so that they are tested against surfaces together.
@@ -136,16 +140,22 @@ def _octant(d: Any) -> Any:
     return sum(dr.select(component < 0, mi.UInt32(1 << axis), 0) for axis, component in enumerate(d))
 
 
-def _nodes(surfaces: list[Surface]) -> tuple[Any, Any]:
+def _scale(surfaces: list[Surface]) -> float:
+    """A power of two that makes the boxes so large that single precision holds them, and distances to them."""
+    largest = max((abs(x) for s in surfaces if s.box is not None for corner in s.box for x in corner), default=0.0)
+    return math.ldexp(1.0, -math.frexp(largest)[1]) if largest > 0 else 1.0
+
+
+def _nodes(surfaces: list[Surface], scale: float) -> tuple[Any, Any]:
     """The nodes of all octants, and the number of an octant's.
 
-    A node is two rows of four: the corner of its box that rays of the octant reach first and the one they reach last,
-    the link, and the object of a leaf, or NOTHING. Unbounded surfaces are leaves before the tree's root, with boxes
-    without bounds.
+    A node is two rows of four: the corner of its box, times the scale, that rays of the octant reach first, and the one
+    they reach last, the link, and the object of a leaf, or NOTHING. Unbounded surfaces are leaves before the tree's
+    root, with boxes without bounds.
     """
     bounded = [i for i, surface in enumerate(surfaces) if surface.box is not None]
     unbounded = [i for i, surface in enumerate(surfaces) if surface.box is None]
-    boxes = np.array([surfaces[i].box for i in bounded], dtype=np.float64).reshape(-1, 2, 3)
+    boxes = np.array([surfaces[i].box for i in bounded], dtype=np.float64).reshape(-1, 2, 3) * scale
     tree = threaded_bvh(boxes[:, 0], boxes[:, 1])
     first, count = len(unbounded), len(unbounded) + tree.size
     low = np.full((8, count, 3), -np.inf, dtype=np.float32)

@@ -57,6 +57,10 @@ _EDGES = 0.0025
 cannot tell the sides, at whatever size."""
 
 
+_BEYOND = (14, 16, 18, 20, 30, 50, 100, 150, 152)
+"""Where squares, in single and in double precision, leave the range of numbers."""
+
+
 def _size(factor: float) -> Case:
     return Case(scaled(still_life(), factor), _SETTINGS, still_picture(), _EDGES)
 
@@ -104,7 +108,7 @@ FAMILIES = (
         "size",
         "A still life of balls, glass and a box on a checkered floor, all of it times a number: the picture stays.",
         "size of the scene",
-        tuple(10.0**power for power in range(-12, 13, 2)),
+        tuple(10.0**power for power in (*(-p for p in reversed(_BEYOND)), *range(-12, 13, 2), *_BEYOND)),
         _size,
         both_ways=True,
     ),
