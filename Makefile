@@ -51,7 +51,7 @@ fuzz: .venv/.fuzzer
 
 stability: .venv/.installed
 	@mkdir -p docs
-	$(BIN)/whitted stability --docs docs
+	$(BIN)/whitted stability --docs docs --methods all
 
 clean:
 	rm -rf build out .venv

@@ -2,18 +2,31 @@
 
 import errno
 import os
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
 
-def check_target(path: Path) -> None:
+def check_apart(target: Path, sources: Iterable[Path]) -> None:
+    """See that a result takes the place of nothing that it is made from.
+
+    Raises:
+        OSError: it would.
+
+    """
+    for source in sources:
+        if target.exists() and source.exists() and target.samefile(source):
+            raise FileExistsError(errno.EEXIST, "this is read, and the result would replace it", str(target))
+
+
+def check_target(path: Path, sources: Iterable[Path] = ()) -> None:
     """See that a file can be written there, so that no one waits for a result that cannot be saved.
 
     Raises:
-        OSError: its folder is missing or not writable, or it is a folder itself.
+        OSError: its folder is missing or not writable, it is a folder itself, or one of the `sources`.
 
     """
+    check_apart(path, sources)
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     if not path.parent.is_dir():

@@ -167,9 +167,43 @@ def test_raytrace_never_draws_over_the_scene(scene, tmp_path, capsys):
     (tmp_path / "link").symlink_to(scene)
     for out in (scene, tmp_path / "link"):
         assert raytrace.main([str(scene), str(out), "4", "3"]) == 2
-        told = f"raytrace: {out}: this is the scene, which the picture would replace\n"
+        told = f"raytrace: {out}: this is read, and the result would replace it\n"
         assert capsys.readouterr().err == told
     assert scene.read_text() == text
+
+
+def test_no_result_takes_the_place_of_what_it_is_made_from(scene, whitted, tmp_path):
+    """A scene, another image, a texture."""
+    (tmp_path / "image.ppm").write_text("P3 1 1 255  255 0 0\n")
+    scene.write_text(SCENE.replace("solid 0 0 1", "texmap image.ppm 0 1 0 0 0 0 0 0"))
+    before = {file: file.read_bytes() for file in tmp_path.iterdir()}
+    image = str(tmp_path / "image.ppm")
+    named = tmp_path / "scene.svg"
+    named.symlink_to(scene)
+    other = str(tmp_path / "new.png")
+    for words in (
+        ["render", scene, image, "4", "3", "--method", "native"],
+        ["render", scene, other, "4", "3", "--method", "native", "--json", scene],
+        ["inspect", scene, "--json", scene],
+        ["pixel", scene, "1", "1", "4", "3", "--json", scene],
+        ["compare", scene, "4", "3", "--json", scene],
+        ["compare", image, image, "--png", image],
+        ["compare", image, image, "--json", image],
+        ["chart", scene, "-o", named],
+        ["chart", scene, "-o", str(tmp_path / "new.svg"), "--csv", scene],
+        ["chart", scene, "-o", str(tmp_path / "new.svg"), "--json", scene],
+    ):
+        status, _, err = whitted(*map(str, words))
+        assert status == 2, words
+        assert "this is read, and the result would replace it" in err, words
+    assert {file: file.read_bytes() for file in tmp_path.iterdir() if file != named} == before
+
+
+def test_names_are_harmless_to_a_terminal(whitted, tmp_path):
+    status, _, err = whitted("inspect", str(tmp_path / "a\x1b[31mb.in"))
+    assert status == 2
+    assert "a?[31mb.in" in err
+    assert "\x1b" not in err
 
 
 def test_raytrace_leaves_a_file_of_a_similar_name(scene, tmp_path):

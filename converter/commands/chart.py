@@ -82,8 +82,8 @@ def run(arguments: argparse.Namespace) -> int:
     settings = settings_from(arguments)
     for file in (out, arguments.csv):
         if file is not None:
-            check_target(file)
-    check_json(arguments.json)
+            check_target(file, arguments.scenes)
+    check_json(arguments.json, arguments.scenes)
     scenes = _read(arguments, settings)
     studies = _measure(arguments, scenes, settings, methods)
 

@@ -78,12 +78,15 @@ def run(arguments: argparse.Namespace) -> int:
     """Compare, and tell."""
     from converter.commands.json_out import check_json, write_json
 
-    check_json(arguments.json)
+    two_images = len(arguments.more) == 1 and is_image(arguments.scene)
+    sources = [arguments.scene, *(Path(file) for file in arguments.more if two_images)]
+    check_json(arguments.json, sources)
     if arguments.png is not None:
+        from converter.files import check_apart
         from converter.images.write import check_writable
 
+        check_apart(arguments.png, sources)
         check_writable(arguments.png)
-    two_images = len(arguments.more) == 1 and is_image(arguments.scene)
     from converter.compare.report import make_report, to_json
 
     if two_images:

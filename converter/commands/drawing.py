@@ -1,14 +1,15 @@
 """From a scene file to an image file, as `raytrace` and `whitted render` do it."""
 
-import errno
 import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from converter.commands.notes import load_with_notices, say
 from converter.commands.progress import ProgressBar
+from converter.files import check_apart
 from converter.images.write import check_writable, write_image
 from converter.renderers.base import Interrupted, Renderer, Rendering
+from converter.scene.model import Texmap
 from converter.scene.settings import Settings
 
 if TYPE_CHECKING:
@@ -33,16 +34,16 @@ def draw(
 
     Raises:
         SceneError: the scene is no scene.
-        OSError: the image cannot be written there, or is the scene itself; known before anything is drawn.
+        OSError: the image cannot be written there, or is what the scene is read from; known before anything is drawn.
         RendererUnavailable: the renderer does not run here.
         Interrupted: Ctrl-C while drawing.
 
     """
-    if out.exists() and scene_file.exists() and out.samefile(scene_file):
-        raise FileExistsError(errno.EEXIST, "this is the scene, which the picture would replace", str(out))
+    check_apart(out, [scene_file])
     check_writable(out, ending)
     started = time.perf_counter()
     scene = load_with_notices(scene_file, settings, quiet, method)
+    check_apart(out, (pigment.file for pigment in scene.pigments if isinstance(pigment, Texmap)))
     read = time.perf_counter()
     with ProgressBar(out.name, quiet) as progress:
         try:

@@ -67,9 +67,12 @@ def run(program: str, command: Callable[[], int]) -> int:
 
 
 def tell(message: str) -> None:
-    """A message on stderr, if it is open: `print` to None would go to stdout."""
+    """A message on stderr, if it is open: `print` to None would go to stdout.
+
+    What a terminal would take for an order, in the name of a file, is shown as a question mark.
+    """
     if sys.stderr is not None:
-        print(message, file=sys.stderr)
+        print("".join(c if c.isprintable() or c in "\n\t" else "?" for c in message), file=sys.stderr)
 
 
 def _told(program: str, error: BaseException) -> tuple[str, int] | None:

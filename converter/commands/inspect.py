@@ -36,7 +36,7 @@ def run(arguments: argparse.Namespace) -> int:
     from converter.commands.json_out import check_json, write_json
     from converter.scene.parser import load_scene
 
-    check_json(arguments.json)
+    check_json(arguments.json, [arguments.scene])
     found = inspect_scene(load_scene(arguments.scene), settings)
     if arguments.json != "-":
         _print(found)

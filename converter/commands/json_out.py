@@ -2,22 +2,22 @@
 
 import json
 import math
-from collections.abc import Mapping, Sequence
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from converter.files import check_target, replacing
 
 
-def check_json(file: str | None) -> None:
+def check_json(file: str | None, sources: Iterable[Path] = ()) -> None:
     """See that `file` can be written, so that no one waits for a result that cannot be saved.
 
     Raises:
-        OSError: it cannot.
+        OSError: it cannot, or is one of the `sources`.
 
     """
     if file is not None and file != "-":
-        check_target(Path(file))
+        check_target(Path(file), sources)
 
 
 def write_json(file: str | None, result: Any) -> None:

@@ -52,7 +52,7 @@ def run(arguments: argparse.Namespace) -> int:
     from converter.commands.json_out import check_json, write_json
     from converter.commands.notes import load_with_notices
 
-    check_json(arguments.json)
+    check_json(arguments.json, [arguments.scene])
     scene = load_with_notices(arguments.scene, settings, arguments.quiet)
     traced: dict[str, dict[str, Any]] = {}
     for name, _, changed in chosen:

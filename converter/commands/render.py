@@ -40,7 +40,7 @@ def run(arguments: argparse.Namespace) -> int:
     from converter.commands.json_out import check_json, write_json
     from converter.commands.notes import say
 
-    check_json(arguments.json)
+    check_json(arguments.json, [arguments.scene])
     quiet, settings = arguments.quiet, method.settings
     rendering, stages = draw(
         method.renderer, arguments.scene, arguments.out, settings, quiet, arguments.keep_partial, arguments.method

@@ -152,7 +152,9 @@ def study_family(
             continue
         for k, method in enumerate(methods):
             tell(f"{family.name} {value:.3g}: {method.name}", (done + k / len(methods)) / len(order))
-            warned = refused or bool(method_warnings(case.scene, case.settings, method))
+            # Of POV-Ray nobody is warned.
+            known = method.arithmetic is not None
+            warned = refused or not known or bool(method_warnings(case.scene, case.settings, method))
             try:
                 if (method, before) in given_up:
                     raise DrawingFailed("not asked, for an easier one took too long")
