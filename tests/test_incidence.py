@@ -1,6 +1,5 @@
 """Eyes and lights that lie on surfaces: no ray decides by a rounding error on which side they are."""
 
-import math
 from dataclasses import replace
 
 import numpy as np
@@ -9,6 +8,7 @@ import pytest
 from converter.compare.metrics import LIMIT
 from converter.renderers.methods import METHODS
 from converter.scene.model import Finish, Polyhedron
+from converter.studies.families.closed_forms import directions
 from converter.studies.families.scenes import (
     GLOW,
     MATTE,
@@ -99,10 +99,7 @@ def test_an_eye_on_an_edge_of_a_body_sees_its_far_sides_from_within(mi, method):
     eye = (0.76, 0.68, 0.0)
     assert all(on_plane(eye, plane) for plane in planes[:2])
     view = camera(eye, (0.7, 0.2, -1.0), 90.0)
-    x, y = np.meshgrid((2 * np.arange(24) + 1 - 24) / 18, (18 - 2 * np.arange(18) - 1) / 18)
-    forward = np.subtract(view.look_at, eye) / math.dist(view.look_at, eye)
-    right = np.cross(forward, view.up) / np.linalg.norm(np.cross(forward, view.up))
-    d = forward + x[..., None] * right + y[..., None] * np.cross(right, forward)
+    d = directions(view, SETTINGS)
     inside = (d @ np.array(planes[0][:3]) < 0) & (d @ np.array(planes[1][:3]) < 0) & (d[..., 2] < 0)
     assert 0.1 < inside.mean() < 0.9
     expected = np.where(inside[..., None], RED, 0.2)
@@ -140,20 +137,12 @@ SHINY = Finish(0.2, 0.5, 0.25, 0.0, 0.0, 0.0, 0.0)
 @pytest.mark.parametrize("method", EXACT)
 def test_a_lamp_in_the_ceiling_of_a_room_lights_the_room(mi, method):
     """A room that is one body around the camera: the light shines along the ceiling, and down on all else."""
-    made = scene(
-        camera((0.3, 0.2, 0.4), (1.0, 0.1, -1.0), 90.0),
-        [(box((-2.1, -1.3, -2.7), (2.3, 1.7, 2.9)), WHITE, SHINY)],
-        [light((0.7, 1.7, -0.9))],
-    )
-    picture = drawn(made, method)
+    low, high, eye = (-2.1, -1.3, -2.7), (2.3, 1.7, 2.9), (0.3, 0.2, 0.4)
+    view = camera(eye, (1.0, 0.1, -1.0), 90.0)
+    picture = drawn(scene(view, [(box(low, high), WHITE, SHINY)], [light((0.7, high[1], -0.9))]), method)
     dark = np.isclose(picture, 0.2).all(axis=2)
-    x, y = np.meshgrid((2 * np.arange(24) + 1 - 24) / 18, (18 - 2 * np.arange(18) - 1) / 18)
-    forward = np.array([0.7, -0.1, -1.4]) / np.linalg.norm([0.7, -0.1, -1.4])
-    right = np.cross(forward, (0, 1, 0)) / np.linalg.norm(np.cross(forward, (0, 1, 0)))
-    d = forward + x[..., None] * right + y[..., None] * np.cross(right, forward)
-    sides = np.array([[(2.3 if v[0] > 0 else -2.1), (1.7 if v[1] > 0 else -1.3), (2.9 if v[2] > 0 else -2.7)]
-                      for v in d.reshape(-1, 3)]).reshape(d.shape)  # fmt: skip
-    t = (sides - (0.3, 0.2, 0.4)) / d
+    d = directions(view, SETTINGS)
+    t = (np.where(d > 0, high, low) - np.array(eye)) / d
     ceiling = (t.argmin(axis=-1) == 1) & (d[..., 1] > 0)
     assert 0.05 < ceiling.mean() < 0.95
     assert (dark == ceiling).all()

@@ -26,8 +26,8 @@ class Bodies:
 
 @dataclass(frozen=True, eq=False)
 class Planes:
-    """Planes that have a face: object and index in it (m,), outward unit normal (m, 3), and offset (m,) from the
-    origin: inside is normal . p + offset <= 0.
+    """Planes that have a face, in the order of the objects: object and index in it (m,), outward unit normal (m, 3),
+    and offset (m,) from the origin: inside is normal . p + offset <= 0.
     """
 
     object: Integers
@@ -71,9 +71,11 @@ class Situation:
         return self.scene.finishes[self.scene.objects[index].finish]
 
     def planes_of(self, index: int) -> Planes:
-        """The planes of one object."""
-        own, all_planes = self.planes.object == index, self.planes
-        return Planes(all_planes.object[own], all_planes.plane[own], all_planes.normal[own], all_planes.offset[own])
+        """The planes of one object, which come together."""
+        every = self.planes
+        first, end = np.searchsorted(every.object, (index, index + 1))
+        own = slice(first, end)
+        return Planes(every.object[own], every.plane[own], every.normal[own], every.offset[own])
 
     def overlap(self, one: int, other: int) -> bool:
         """Whether the boxes around two objects touch, with a little room."""

@@ -46,10 +46,11 @@ def _pixel_shares(s: Situation, polyhedra_only: bool = False) -> Floats:
     rays = _corner_rays(s)
     t = -s.planes.heights(s.eye) / (rays @ s.planes.normal.T) * np.linalg.norm(rays, axis=1)[:, None]
     seen = np.where((t > _NOISE * s.reach) & np.isfinite(t), t, 0.0).max(axis=0, initial=0.0)
-    bounded = np.array(s.needs.bounded, dtype=np.bool_)
-    for i in np.flatnonzero(~bounded):
-        own = s.planes.object == i
-        distance[i], coordinate[i] = seen[own].max(initial=0.0), np.abs(s.planes.offset[own]).max(initial=0.0)
+    endless = ~np.array(s.needs.bounded, dtype=np.bool_)
+    distance[endless] = 0.0
+    own = endless[s.planes.object]
+    np.maximum.at(distance, s.planes.object[own], seen[own])
+    np.maximum.at(coordinate, s.planes.object[own], np.abs(s.planes.offset[own]))
     shares = _pixel(s) * distance / (np.maximum(coordinate, s.reach) + distance)
     balls = bodies.object[bodies.is_ball]
     shares[balls] = np.inf if polyhedra_only else shares[balls]
