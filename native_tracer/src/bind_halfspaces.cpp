@@ -22,7 +22,6 @@ namespace nb = nanobind;
 namespace {
 
 using whitted::halfspaces::Body;
-using whitted::halfspaces::Edge;
 using whitted::halfspaces::Face;
 using whitted::halfspaces::Plane;
 using whitted::halfspaces::Vec;
@@ -132,7 +131,7 @@ nb::list bodies(const Coefficients& coefficients, const Offsets& offsets) {
 nb::tuple describe(const Face& face, const std::vector<int>& kept) {
     std::vector<int> neighbors;
     std::vector<double> points;
-    for (const Edge& edge : face.edges()) {
+    for (const auto& [turn, edge] : face.edges()) {
         const Vec p = face.at(edge, edge.low);
         neighbors.push_back(kept[static_cast<std::size_t>(edge.neighbor)]);
         points.insert(points.end(), {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
