@@ -317,6 +317,12 @@ def test_faces_close(planes):
         assert edges == {(i, k) for k, i in edges}
 
 
+def test_what_begins_huge_loses_no_edges():
+    """Beside the square that a face begins as, and the far ends of this column, each side's edges are noise at first."""
+    sides = polyhedron_faces([*prism(500), (0, 0, 1, -1e8), (0, 0, -1, -1e8)])[:500]
+    assert all({*side.neighbors} == {(k - 1) % 500, (k + 1) % 500, 500, 501} for k, side in enumerate(sides))
+
+
 def test_faces_of_what_has_none():
     assert polyhedron_faces(CUBE[:5]) == []
     assert polyhedron_faces([(1, 0, 0, 1), (-1, 0, 0, 1)]) == []

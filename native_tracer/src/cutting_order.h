@@ -60,23 +60,14 @@ class CuttingOrder {
         return numbers;
     }
 
-    // Cut a face by all planes.
+    // Cut a face by all planes. A huge face counts as missed by planes that take less of it than the noise of its far
+    // corners; so it is cut once more by those that affect what is left.
     void cut(Face& face) const {
-        std::for_each(order_.begin(), end_of_first_round(), [&](int k) { face.cut_by(k); });
         std::vector<int> places;
-        for (const PlaneTree& round : rounds_) {
-            if (face.empty()) {
-                return;
-            }
-            places.clear();
-            round.for_each_near(face.outline(), [&](int place) {
-                if (face.affected_by(number_at(place))) {
-                    places.push_back(place);
-                }
-            });
-            std::sort(places.begin(), places.end());
-            for (const int place : places) {
-                face.cut_by(number_at(place));
+        for (int turn = 0; turn < 2; ++turn) {
+            std::for_each(order_.begin(), end_of_first_round(), [&](int k) { face.cut_by(k); });
+            for (const PlaneTree& round : rounds_) {
+                cut(face, round, places);
             }
         }
     }
@@ -87,6 +78,21 @@ class CuttingOrder {
 
     std::vector<int>::const_iterator end_of_first_round() const {
         return order_.begin() + static_cast<std::ptrdiff_t>(std::min(first_round, order_.size()));
+    }
+    void cut(Face& face, const PlaneTree& round, std::vector<int>& places) const {
+        if (face.empty()) {
+            return;
+        }
+        places.clear();
+        round.for_each_near(face.outline(), [&](int place) {
+            if (face.affected_by(number_at(place))) {
+                places.push_back(place);
+            }
+        });
+        std::sort(places.begin(), places.end());
+        for (const int place : places) {
+            face.cut_by(number_at(place));
+        }
     }
     int number_at(int place) const { return order_[static_cast<std::size_t>(place)]; }
 
