@@ -318,7 +318,7 @@ def test_faces_close(planes):
 
 
 def test_what_begins_huge_loses_no_edges():
-    """Beside the square that a face begins as, and the far ends of this column, each side's edges are noise at first."""
+    """For the far ends of this column, and the square that a face begins as, a side is narrow as noise."""
     sides = polyhedron_faces([*prism(500), (0, 0, 1, -1e8), (0, 0, -1, -1e8)])[:500]
     assert all({*side.neighbors} == {(k - 1) % 500, (k + 1) % 500, 500, 501} for k, side in enumerate(sides))
 
