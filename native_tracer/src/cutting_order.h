@@ -73,7 +73,7 @@ class CuttingOrder {
     }
 
  private:
-    static constexpr std::size_t first_round = 16;
+    static constexpr std::size_t first_round = 64;
     static constexpr std::size_t growth = 4;
 
     std::vector<int>::const_iterator end_of_first_round() const {
