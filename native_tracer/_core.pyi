@@ -139,3 +139,8 @@ def halfspace_bodies(coefficients: Buffer, offsets: Buffer) -> list[tuple[Any, .
 
 def halfspace_faces(coefficients: Buffer) -> list[tuple[list[int], list[float], float]]:
     """The face polygons of one bounded intersection; see `native_tracer.halfspaces`."""
+
+def halfspace_polygons(coefficients: Buffer, far: float, leaf_size: int) -> list[tuple[list[int], list[float], float]]:
+    """The face polygons of any intersection as far as `far`; a `leaf_size` not below the number of planes has all of
+    them tried, and none searched for.
+    """

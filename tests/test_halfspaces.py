@@ -195,6 +195,7 @@ def test_what_rounding_may_have_made_has_no_volume(scale):
         ([(0, 0, 1, -5), (1, 1, 1, 1), (-1, 0, 0, 0), (0, -1, 0, 0), (0, 0, -1, 0)], (1, 2, 3, 4)),
         ([*CUBE, *[(x, y, z, 1) for x, y, z, _ in OCTAHEDRON]], None),
         ([*sphere_planes(200), (1, 0, 0, 5)], None),
+        ([(1, 0, 0, k - 9) for k in range(9)] + [(-1, 0, 0, 4.5)], (5, 9)),
     ],
 )
 def test_conflict(planes, conflict):
@@ -316,6 +317,12 @@ def test_faces_close(planes):
         assert edges == {(i, k) for k, i in edges}
 
 
+def test_what_begins_huge_loses_no_edges():
+    """For the far ends of this column, and the square that a face begins as, a side is narrow as noise."""
+    sides = polyhedron_faces([*prism(500), (0, 0, 1, -1e8), (0, 0, -1, -1e8)])[:500]
+    assert all({*side.neighbors} == {(k - 1) % 500, (k + 1) % 500, 500, 501} for k, side in enumerate(sides))
+
+
 def test_faces_of_what_has_none():
     assert polyhedron_faces(CUBE[:5]) == []
     assert polyhedron_faces([(1, 0, 0, 1), (-1, 0, 0, 1)]) == []
@@ -328,7 +335,114 @@ def test_redundant_planes_have_empty_faces():
     assert {i for face in faces for i in face.neighbors} == set(range(1, 7))
 
 
+# ---- The search for the planes that cut a face -----------------------------------------------------------------------
+
+
+def cone(count: int, height: float = 1.0) -> list[Plane]:
+    """Planes through one point; only the roundings of their normals tell which of them are faces."""
+    return [(x, y, 1.0, -height) for x, y, _, _ in prism(count)]
+
+
+def pencil(count: int) -> list[Plane]:
+    """Planes through the z axis."""
+    return [(math.cos(a), math.sin(a), 0.0, 0.0) for a in (1.5 * i / count for i in range(count))]
+
+
+def polygons(planes: Sequence[Sequence[float]], leaf_size: int):
+    height = max(abs(d) / math.hypot(a, b, c) for a, b, c, d in planes)
+    coefficients = array("d", [x for plane in planes for x in plane])
+    return _core.halfspace_polygons(coefficients, 2.0**24 * (height or 1.0), leaf_size)
+
+
+def assert_search_changes_nothing(planes: Sequence[Sequence[float]]) -> None:
+    all_tried = polygons(planes, len(planes))
+    assert polygons(planes, 1) == all_tried
+    assert polygons(planes, 8) == all_tried
+
+
+@pytest.mark.parametrize(
+    "planes",
+    [
+        sphere_planes(400),
+        moved(sphere_planes(400), 1, 1e-3, 30.0),
+        prism(400),
+        moved([*prism(400), *CUBE[4:]], 2, 1.0, 3.0),
+        cone(400),
+        cone(400, 0.0),
+        moved([*cone(400), (0, 0, -1, 0)], 3, 1.0, 3.0),
+        [*cone(200), *((x, y, -z, d) for x, y, z, d in cone(200))],
+        pencil(400),
+        moved(pencil(400), 4),
+        CUBE * 60,
+        [(0.3, 0.4, 0.5, -1 - (7919 * i % 400) / 400) for i in range(400)],
+        [*sphere_planes(400), (1, 0, 0, 5)],
+    ],
+)
+def test_search_for_planes_changes_nothing(planes):
+    assert_search_changes_nothing(planes)
+
+
+@st.composite
+def many_planes(draw) -> list[Plane]:
+    """Bodies of up to some hundred planes, bounded or open, of which some repeat or nearly repeat others."""
+    seed = draw(st.integers(0, 10**6))
+    rng = random.Random(seed)
+    count = draw(st.integers(17, 150))
+    kind = draw(st.sampled_from(["gem", "prism", "cone", "parallel", "integers", "random"]))
+    if kind == "gem":
+        planes = sphere_planes(count, seed)
+    elif kind == "prism":
+        planes = prism(count)
+    elif kind == "cone":
+        planes = cone(count)
+    elif kind == "parallel":
+        planes = [(0.6, 0.0, 0.8, -rng.random()) for _ in range(count)]
+    elif kind == "integers":
+        planes = [(*(rng.randint(-2, 2) for _ in range(3)), -rng.randint(0, 3)) for _ in range(count)]
+        planes = [plane for plane in planes if any(plane[:3])] or CUBE
+    else:
+        planes = [(*(rng.gauss(0, 1) for _ in range(3)), rng.gauss(-0.5, 1)) for _ in range(count)]
+    if draw(st.booleans()):
+        planes = [(*plane[:3], plane[3] * (1 + 9 * (rng.random() < 0.9) * rng.random())) for plane in planes]
+    if draw(st.booleans()):
+        noise = 10 ** rng.uniform(-17, -1)
+        planes += [tuple(x * (1 + noise * rng.gauss(0, 1)) for x in plane) for plane in rng.choices(planes, k=count)]
+    rng.shuffle(planes)
+    return moved(planes, seed, draw(st.sampled_from([1e-6, 1.0])), draw(st.sampled_from([0.0, 1.0, 30.0])))
+
+
+@settings(max_examples=100, deadline=None)
+@given(many_planes())
+def test_search_for_planes_changes_nothing_anywhere(planes):
+    assert_search_changes_nothing(planes)
+
+
+def test_a_face_of_many_edges():
+    *sides, top, bottom = polyhedron_faces([*prism(3000), *CUBE[4:]])
+    assert sorted(top.neighbors) == sorted(bottom.neighbors) == list(range(3000))
+    for base, height in ((top, 1.0), (bottom, -1.0)):
+        assert base.area == pytest.approx(3000 * math.tan(math.pi / 3000), rel=1e-13)
+        begins = [base.points[i : i + 3] for i in range(0, len(base.points), 3)]
+        for k, (x, y, z) in zip(base.neighbors, begins, strict=True):
+            assert z == height
+            side = sides[k].points
+            assert min(math.dist((x, y, z), side[i : i + 3]) for i in range(0, len(side), 3)) < 1e-12
+
+
 # ---- Size and misuse -------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(
+    ("planes", "kept", "conflict"),
+    [
+        (prism(20000), tuple(range(20000)), ()),
+        (CUBE * 3333, (0, 1, 2, 3, 4, 5), ()),
+        ([*(CUBE[0] for _ in range(19999)), (-1, 0, 0, 3)], (), (0, 19999)),
+    ],
+)
+def test_twenty_thousand_planes(planes, kept, conflict):
+    facts = facts_of(planes)
+    assert (facts.kept, facts.conflict) == (kept, conflict)
 
 
 def test_many_planes_and_many_polyhedra():

@@ -14,7 +14,8 @@ that misses a face or an edge is not used. Then the polygons' own are, if they c
 from collections import Counter
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
-from itertools import islice
+from itertools import compress, islice, product
+from operator import le, mul, sub
 from pathlib import Path
 from typing import TYPE_CHECKING, Literal
 
@@ -113,9 +114,18 @@ def _distinct(planes: Sequence[HalfSpace]) -> list[int]:
     """The planes but those that nearly coincide with an earlier one."""
     unit = _unit_planes([tuple(map(float, plane)) for plane in planes]).astype(np.float64)
     allowed = NEAR * np.array([1.0, 1.0, 1.0, np.abs(unit[:, 3]).max()])
+    # In a grid of cells of that size, the cell of each plane and those around it have all that are so near.
+    cells = np.floor(np.divide(unit, allowed, out=np.zeros_like(unit), where=allowed > 0)).astype(np.int64)
+    strides = [int(4 / NEAR) ** axis for axis in range(4)]
+    around = [sum(map(mul, steps, strides)) for steps in product((0, -1, 1), repeat=4)]
+    found: dict[int, list[int]] = {}
     result: list[int] = []
-    for k, plane in enumerate(unit):
-        if not np.any(np.all(np.abs(unit[result] - plane) <= allowed, axis=1)):
+    rows, limits = unit.tolist(), allowed.tolist()
+    for k, (row, cell) in enumerate(zip(rows, cells.tolist(), strict=True)):
+        place = sum(map(mul, cell, strides))
+        near = (rows[other] for step in around for other in found.get(place + step, ()))
+        if not any(all(map(le, map(abs, map(sub, row, other)), limits)) for other in near):
+            found.setdefault(place, []).append(k)
             result.append(k)
     return result
 
@@ -166,11 +176,9 @@ def _edges(faces: Sequence[Face]) -> set[tuple[int, int]]:
 
     Where more than three planes meet in a vertex, rounding puts edges of no length between them: those are left out.
     """
-    found: set[tuple[int, int]] = set()
-    long: set[tuple[int, int]] = set()
-    for k, face in enumerate(faces):
-        found |= {(k, i) for i in face.neighbors}
-        long |= {(k, i) for i, length in _relative_lengths(face) if length > HAIR}
+    pairs = [(k, i) for k, face in enumerate(faces) for i in face.neighbors]
+    found = set(pairs)
+    long = set(compress(pairs, _relative_lengths(faces) > HAIR))
     edges = {(k, i) for k, i in long if (i, k) in long}
     # A face that has no others keeps them.
     sizes = Counter(k for k, _ in edges)
@@ -178,14 +186,16 @@ def _edges(faces: Sequence[Face]) -> set[tuple[int, int]]:
     return edges | {(k, i) for k, i in found if (i, k) in found and (k in narrow or i in narrow)}
 
 
-def _relative_lengths(face: Face) -> Iterable[tuple[int, float]]:
-    """A face's neighbours, with the edges' lengths relative to their distance from the origin."""
-    if not face.neighbors:
-        return ()
-    begins = _points(face)
-    ends = np.roll(begins, -1, axis=0)
-    lengths = np.linalg.norm(ends - begins, axis=1) / np.abs(begins).max()
-    return zip(face.neighbors, lengths.tolist(), strict=True)
+def _relative_lengths(faces: Sequence[Face]) -> Floats:
+    """The lengths of all faces' edges, one face after the other, relative to their face's distance from the origin."""
+    sizes = np.array([len(face.neighbors) for face in faces if face.neighbors])
+    begins = np.concatenate([_points(face) for face in faces if face.neighbors])
+    firsts = np.cumsum(sizes) - sizes
+    following = np.arange(1, len(begins) + 1)
+    following[firsts + sizes - 1] = firsts
+    reaches = np.maximum.reduceat(np.abs(begins).max(axis=1), firsts)
+    lengths: Floats = np.linalg.norm(begins[following] - begins, axis=1) / np.repeat(reaches, sizes)
+    return lengths
 
 
 def _points(face: Face) -> Floats:
@@ -260,13 +270,7 @@ def _mesh(planes: Long, rings: dict[int, Ring], count: int, faces: Sequence[Face
 
     """
     vertices, corners = _vertices(rings, faces)
-    distances = vertices @ planes[:, :3].T.astype(np.float64) + planes[:, 3].astype(np.float64)
-    reach = np.abs(vertices).max()
-    outermost = distances.max(axis=0)
-    if out := [k for k in corners if outermost[k] > OFF * reach]:
-        raise PolyhedronError(f"plane {_listed(out)} cuts off more")
-    if off := [k for k, ring in corners.items() if distances[ring, k].min() < -OFF * reach]:
-        raise PolyhedronError(f"the face of plane {_listed(off)} is not flat")
+    _check_convex(planes, rings, vertices, corners)
     triangles: list[list[int]] = []
     owners: list[int] = []
     for k, ring in corners.items():
@@ -321,6 +325,41 @@ def _vertices(rings: dict[int, Ring], faces: Sequence[Face]) -> tuple[Floats, di
     places[vertex] = [begin[pair] for pair in index]
     vertices = iter(vertex)
     return places, {k: list(islice(vertices, len(ring))) for k, ring in rings.items()}
+
+
+def _check_convex(planes: Long, rings: dict[int, Ring], vertices: Floats, corners: dict[int, Ring]) -> None:
+    """Whether the vertices of a closed surface are on the planes of their faces, and none is beyond another plane.
+
+    A closed surface that is convex along every edge is convex (van Heijenoort, "On locally convex manifolds",
+    Communications on Pure and Applied Mathematics 5, 1952): of a face's neighbour only those vertices matter that come
+    before and after the edge between them.
+
+    Raises:
+        PolyhedronError: there are others.
+
+    """
+    owners = np.repeat(list(corners), [len(ring) for ring in corners.values()])
+    begins = np.array([v for ring in corners.values() for v in ring])
+    heights = _heights(planes, owners, vertices[begins])
+    place = {(k, i): a for k, ring in rings.items() for a, i in enumerate(ring)}
+    beside = [
+        (corners[i][place[i, k] - 1], corners[i][(place[i, k] + 2) % len(corners[i])])
+        for k, ring in rings.items()
+        for i in ring
+    ]
+    outermost = np.maximum(heights, _heights(planes, owners[:, None], vertices[beside]).max(axis=1))
+    allowed = OFF * np.abs(vertices).max()
+    if np.any(out := outermost > allowed):
+        raise PolyhedronError(f"plane {_listed(np.unique(owners[out]))} cuts off more")
+    if np.any(off := heights < -allowed):
+        raise PolyhedronError(f"the face of plane {_listed(np.unique(owners[off]))} is not flat")
+
+
+def _heights(planes: Long, which: NDArray[np.int64], points: Floats) -> Floats:
+    """Of points above planes, one plane for each."""
+    sides = planes[which].astype(np.float64)
+    heights: Floats = (points * sides[..., :3]).sum(axis=-1) + sides[..., 3]
+    return heights
 
 
 def _triangulated(corners: Ring) -> list[list[int]]:

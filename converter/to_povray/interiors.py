@@ -11,10 +11,13 @@ import math
 from enum import Enum
 from itertools import combinations
 from operator import lt
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from converter.scene.model import Polyhedron, Scene, Shape, Sphere, Vector
 from converter.scene.needs import SceneNeeds
+
+if TYPE_CHECKING:
+    from native_tracer.halfspaces import PolyhedronFacts
 
 
 class Interior(NamedTuple):
@@ -109,7 +112,7 @@ def _apart(first: Shape, second: Shape) -> bool:
         case Polyhedron(), Sphere():
             return _apart(second, first)
         case Polyhedron(), Polyhedron():
-            return not _solid(first, second)
+            return not _common(first, second).solid
     return False
 
 
@@ -126,16 +129,16 @@ def _inside(inner: Shape, outer: Shape) -> bool:
             corners = [points[k : k + 3] for points in faces for k in range(0, len(points), 3)]
             return all(math.dist(corner, outer.center) <= outer.radius for corner in corners)
         case Polyhedron(), Polyhedron():
-            beyond = (Polyhedron(((-a, -b, -c, -d),)) for a, b, c, d in outer.planes)
-            return not any(_solid(inner, halfspace) for halfspace in beyond)
+            # They are not apart, so the inner one is what they have in common if all its faces are the inner one's.
+            return all(k < len(inner.planes) for k in _common(inner, outer).kept)
     return False
 
 
-def _solid(first: Polyhedron, second: Polyhedron) -> bool:
-    """Whether two polyhedra have a volume in common."""
+def _common(first: Polyhedron, second: Polyhedron) -> "PolyhedronFacts":
+    """What two polyhedra have in common."""
     from native_tracer.halfspaces import polyhedron_facts
 
-    return polyhedron_facts([first.planes + second.planes])[0].solid
+    return polyhedron_facts([first.planes + second.planes])[0]
 
 
 def _heights(polyhedron: Polyhedron, point: Vector) -> list[float]:

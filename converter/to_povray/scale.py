@@ -22,6 +22,8 @@ def scaled(scene: Scene, factor: float) -> Scene:
         ExportError: a plane cannot be multiplied.
 
     """
+    if factor == 1:
+        return scene
 
     def times(v: Vector) -> Vector:
         x, y, z = v

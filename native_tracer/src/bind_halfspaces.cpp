@@ -4,25 +4,23 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/vector.h>
 
-#include <algorithm>
-#include <atomic>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <numeric>
 #include <stdexcept>
 #include <string>
-#include <system_error>
-#include <thread>
 #include <vector>
 
+#include "halfspace_conflict.h"
 #include "halfspaces.h"
+#include "parallel.h"
 
 namespace nb = nanobind;
 
 namespace {
 
 using whitted::halfspaces::Body;
-using whitted::halfspaces::Edge;
 using whitted::halfspaces::Face;
 using whitted::halfspaces::Plane;
 using whitted::halfspaces::Vec;
@@ -72,32 +70,6 @@ Result examine(const std::vector<Plane>& planes) {
     return result;
 }
 
-// Calls work(i) for all i below count, from as many threads as are worth starting.
-template <typename Work>
-void for_each_index(std::size_t count, Work work) {
-    constexpr std::size_t share = 256;  // small polyhedra, a few milliseconds
-    const std::size_t thread_count =
-        std::clamp<std::size_t>(count / share, 1, std::max(1U, std::thread::hardware_concurrency()));
-    std::atomic<std::size_t> next = 0;
-    const auto loop = [&] {
-        for (std::size_t i = next++; i < count; i = next++) {
-            work(i);
-        }
-    };
-    std::vector<std::thread> threads;
-    try {
-        for (std::size_t i = 1; i < thread_count; ++i) {
-            threads.emplace_back(loop);
-        }
-    } catch (const std::system_error&) {
-        // Fewer will do.
-    }
-    loop();
-    for (std::thread& thread : threads) {
-        thread.join();
-    }
-}
-
 nb::tuple describe(const Result& result) {
     const Body& body = result.body;
     return nb::make_tuple(body.solid, body.solid && body.bounded, nb::tuple(nb::cast(body.kept)),
@@ -119,7 +91,8 @@ nb::list bodies(const Coefficients& coefficients, const Offsets& offsets) {
     std::vector<Result> results(polyhedra.size());
     {
         const nb::gil_scoped_release others_may_run;
-        for_each_index(results.size(), [&](std::size_t i) { results[i] = examine(polyhedra[i]); });
+        constexpr std::size_t share = 256;  // small polyhedra, a few milliseconds
+        whitted::for_each_index(results.size(), share, [&](std::size_t i) { results[i] = examine(polyhedra[i]); });
     }
     nb::list list;
     for (const Result& result : results) {
@@ -128,13 +101,13 @@ nb::list bodies(const Coefficients& coefficients, const Offsets& offsets) {
     return list;
 }
 
-// The edges of one face: neighbours, and three coordinates of where each edge begins.
+// The edges of one face: neighbours, -1 where there is none, and three coordinates of where each edge begins.
 nb::tuple describe(const Face& face, const std::vector<int>& kept) {
     std::vector<int> neighbors;
     std::vector<double> points;
-    for (const Edge& edge : face.edges()) {
+    for (const auto& [turn, edge] : face.edges()) {
         const Vec p = face.at(edge, edge.low);
-        neighbors.push_back(kept[static_cast<std::size_t>(edge.neighbor)]);
+        neighbors.push_back(edge.neighbor < 0 ? -1 : kept[static_cast<std::size_t>(edge.neighbor)]);
         points.insert(points.end(), {static_cast<double>(p.x), static_cast<double>(p.y), static_cast<double>(p.z)});
     }
     return nb::make_tuple(nb::cast(neighbors), nb::cast(points), static_cast<double>(face.area()));
@@ -168,6 +141,17 @@ nb::list faces(const Coefficients& coefficients) {
     return list;
 }
 
+nb::list polygons(const Coefficients& coefficients, double far, std::size_t leaf_size) {
+    const std::vector<Plane> planes = read_planes(coefficients, 0, count_planes(coefficients));
+    std::vector<int> numbers(planes.size());
+    std::iota(numbers.begin(), numbers.end(), 0);
+    nb::list list;
+    for (const Face& face : whitted::halfspaces::faces_of(planes, far, leaf_size)) {
+        list.append(describe(face, numbers));
+    }
+    return list;
+}
+
 }  // namespace
 
 void bind_halfspaces(nb::module_& m) {
@@ -175,4 +159,7 @@ void bind_halfspaces(nb::module_& m) {
           "What is known of each intersection of half-spaces; see native_tracer.halfspaces.");
     m.def("halfspace_faces", &faces, nb::arg("coefficients"),
           "The face polygons of one bounded intersection; see native_tracer.halfspaces.");
+    m.def("halfspace_polygons", &polygons, nb::arg("coefficients"), nb::arg("far"), nb::arg("leaf_size"),
+          "The face polygons of any intersection as far as `far`; a `leaf_size` not below the number of planes has all "
+          "of them tried, and none searched for.");
 }

@@ -9,36 +9,28 @@
 #include <cstddef>
 #include <vector>
 
+#include "cutting_order.h"
 #include "halfspace_faces.h"
+#include "parallel.h"
 
 namespace whitted::halfspaces {
 
-// The numbers 0 to count - 1 in an order that looks random, the same in every run. In such an order the first few
-// planes cut a face down to about its size, and the rest miss it (de Berg et al., section 4.4).
-inline std::vector<int> shuffled(std::size_t count) {
-    std::vector<int> order(count);
-    std::size_t random = 1;
-    for (std::size_t i = 0; i < count; ++i) {
-        random = (random * 1103515245 + 12345) % 2147483648U;
-        const std::size_t j = random / 8 % (i + 1);
-        order[i] = order[j];
-        order[j] = static_cast<int>(i);
-    }
-    return order;
-}
-
 // The faces of all planes, empty ones too, finished, as far as `far` from the origin. They refer to `planes`.
-inline std::vector<Face> faces_of(const std::vector<Plane>& planes, Real far) {
-    const std::vector<int> order = shuffled(planes.size());
+inline std::vector<Face> faces_of(const std::vector<Plane>& planes, Real far,
+                                  std::size_t leaf_size = CuttingOrder::usual_leaf_size) {
+    const CuttingOrder order(planes, leaf_size);
     std::vector<Face> faces;
     faces.reserve(planes.size());
     for (std::size_t k = 0; k < planes.size(); ++k) {
-        Face& face = faces.emplace_back(planes, static_cast<int>(k), far);
-        for (const int other : order) {
-            face.cut_by(other);
-        }
-        face.finish();
+        faces.emplace_back(planes, static_cast<int>(k), far);
     }
+    const std::vector<int> numbers = order.by_neighborhood();
+    constexpr std::size_t share = 256;  // faces, a few milliseconds
+    for_each_index(numbers.size(), share, [&](std::size_t i) {
+        Face& face = faces[static_cast<std::size_t>(numbers[i])];
+        order.cut(face);
+        face.finish();
+    });
     return faces;
 }
 
@@ -170,32 +162,6 @@ inline Body body_of(const std::vector<Plane>& planes, std::vector<Face>& faces) 
         }
     }
     return body;
-}
-
-// Planes, at most a few, that already leave no volume by themselves, of planes that leave none; ascending. By Helly's
-// theorem four are enough. Each is the last plane of the shortest beginning that leaves none; it is put first, and the
-// next one looked for.
-inline std::vector<int> conflict_of(const std::vector<Plane>& planes) {
-    std::vector<int> found;
-    const auto leaves_none = [&](std::size_t count) {
-        std::vector<Plane> some(planes.begin(), planes.begin() + static_cast<std::ptrdiff_t>(count));
-        for (const int k : found) {
-            some.push_back(planes[static_cast<std::size_t>(k)]);
-        }
-        std::vector<Face> faces;
-        return !body_of(some, faces).solid;
-    };
-    std::size_t high = planes.size();
-    while (found.size() < 4 && !leaves_none(0)) {
-        std::size_t low = 0;
-        while (high - low > 1) {
-            const std::size_t middle = low + (high - low) / 2;
-            (leaves_none(middle) ? high : low) = middle;
-        }
-        found.push_back(static_cast<int>(high - 1));
-    }
-    std::sort(found.begin(), found.end());
-    return found;
 }
 
 }  // namespace whitted::halfspaces
