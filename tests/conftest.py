@@ -1,8 +1,14 @@
 """Shared by all tests: Mitsuba, started once, and small scenes."""
 
+import signal
+
 import pytest
 
 from converter.scene.model import Camera, Checker, Finish, Light, Object, Polyhedron, Scene, Solid, Sphere
+
+if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
+    # A shell has it so in what runs in the background, where tests of Ctrl-C would wait for ever.
+    signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
 @pytest.fixture(scope="session")
