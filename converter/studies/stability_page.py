@@ -43,7 +43,8 @@ trouble and has a true picture: by a closed form, or by the native tracer in lon
 differs from the truth by more than 1/255, but for the few that the family allows.
 
 Where `whitted render` and `whitted inspect` see that a scene enters a region in which a method is known to fail, they
-say so, and name the method that holds. The study asks for these warnings, too: {silent}.
+say so, and name the method that holds; of POV-Ray nobody is warned. The study asks for these warnings, too:
+{silent}.
 
 ## Up to where each holds
 

@@ -28,6 +28,7 @@ SEEN: Mapping[str, tuple[str, str]] = {
     "gap": ("mitsuba-offset", "light falls into a closed gap, for shadow rays start beyond its roof"),
     "plate": ("mitsuba-ulp", "the floor shades itself in dots, for its hits lie below it by more than the offset"),
     "low-light": ("native-float", "the floor is grainy: of how high the light is above it no digits are left"),
+    "coplanar": ("povray", "of two faces in one plane, rounding chooses one for every ray"),
     "nearly-coplanar": ("native-float", "of two floors, rounding chooses one for every ray"),
     "checker-boundary": ("mitsuba-offset", "cells of the layer below appear, for hits have fallen beneath the floor"),
     "texmap-seam": ("mitsuba-offset", "the columns of texels lie elsewhere, where hits have been rounded to"),

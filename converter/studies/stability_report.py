@@ -1,5 +1,6 @@
 """The stability study as a table, as Markdown and as JSON."""
 
+import re
 from collections.abc import Sequence
 from dataclasses import asdict
 from typing import Any
@@ -42,21 +43,28 @@ def number(value: float) -> str:
 
 
 def failures(studies: Sequence[FamilyStudy]) -> list[str]:
-    """A line for every reason for which pictures are missing."""
-    reasons: dict[tuple[str, str], dict[str, float]] = {}
+    """A line for every reason for which pictures are missing; of reasons that differ in numbers the first is told."""
+    missing: dict[tuple[str, str], tuple[str, dict[str, list[str]]]] = {}
+
+    def add(family: str, reason: str, method: str, value: float) -> None:
+        _, values = missing.setdefault((family, re.sub(r"[-+.e\d]+", "#", reason)), (reason, {}))
+        values.setdefault(method, []).append(number(value))
+
     for study in studies:
         for value, reason in study.broken.items():
-            reasons.setdefault((study.family.name, f"no truth: {reason}"), {}).setdefault("all methods", value)
+            add(study.family.name, f"no truth: {reason}", "all methods", value)
         for method, outcomes in study.outcomes.items():
             for outcome in outcomes:
                 if outcome.failure is not None:
-                    key = study.family.name, outcome.failure
-                    reasons.setdefault(key, {}).setdefault(method, outcome.value)
-    return [
-        f"no picture: {family}, {', '.join(f'{method} from {number(value)} on' for method, value in found.items())}: "
-        f"{reason}"
-        for (family, reason), found in reasons.items()
-    ]
+                    add(study.family.name, outcome.failure, method, outcome.value)
+    lines = []
+    for (family, _), (reason, values) in missing.items():
+        together: dict[str, list[str]] = {}
+        for method, found in values.items():
+            together.setdefault(", ".join(found), []).append(method)
+        where = "; ".join(f"{', '.join(methods)} at {at}" for at, methods in together.items())
+        lines.append(f"no picture: {family}, {where}: {reason}")
+    return lines
 
 
 def silences(studies: Sequence[FamilyStudy]) -> list[str]:

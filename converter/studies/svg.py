@@ -5,13 +5,14 @@ import re
 _STYLE = re.compile(r'style="([^"]*)"')
 _NUMBER = re.compile(r"-?\d+\.\d{3,}")
 _TAG = re.compile(r"<(?:path|use|text|g|rect)\b[^>]*>")
+_HASH = re.compile(r'(?<= id=")[mp][0-9a-f]{10}(?=")')
 _EMPTY = re.compile(
     r'\s+(?:id="(?:text|patch|line2d|xtick|ytick|matplotlib\.axis|axes)_\d+"|transform="rotate\(-0 [^"]*\)")'
 )
 
 
 def compact(svg: str) -> str:
-    """The same picture: styles as classes, coordinates to a tenth of a point, no groups that say nothing."""
+    """The same picture: styles as classes, short names, tenths of a point, and no groups that say nothing."""
     classes: dict[str, str] = {}
 
     def style(match: re.Match[str]) -> str:
@@ -24,8 +25,17 @@ def compact(svg: str) -> str:
 
     head, separator, body = svg.partition("<defs>")
     body = re.sub(r"\s*\n\s*", "\n", _unwrapped(_TAG.sub(tag, body)))
+    body = _renamed(body)
     rules = "".join(f".{name}{{{rule}}}" for rule, name in classes.items())
     return f"{head}<style>{rules}</style>{separator}{body}"
+
+
+def _renamed(body: str) -> str:
+    """With short names for markers and clips instead of hashes."""
+    names: dict[str, str] = {}
+    for name in _HASH.findall(body):
+        names.setdefault(name, f"i{len(names)}")
+    return re.sub("|".join(names), lambda match: names[match[0]], body) if names else body
 
 
 def _unwrapped(body: str) -> str:
