@@ -387,7 +387,7 @@ def many_planes(draw) -> list[Plane]:
     """Bodies of up to some hundred planes, bounded or open, of which some repeat or nearly repeat others."""
     seed = draw(st.integers(0, 10**6))
     rng = random.Random(seed)
-    count = draw(st.integers(17, 150))
+    count = draw(st.integers(40, 300))
     kind = draw(st.sampled_from(["gem", "prism", "cone", "parallel", "integers", "random"]))
     if kind == "gem":
         planes = sphere_planes(count, seed)

@@ -42,56 +42,62 @@ class CuttingOrder {
             height = std::max(height, std::abs(plane.offset));
         }
         const Real unit = height > 0 ? std::ldexp(Real(1), std::ilogb(height)) : 1;
-        std::size_t begin = std::min(first_round, order_.size());
-        while (begin < order_.size()) {
-            const std::size_t end = std::min(growth * begin, order_.size());
+        const auto add_round = [&](std::size_t begin, std::size_t end) {
             const std::span<const int> numbers(order_.data() + begin, end - begin);
             rounds_.emplace_back(planes, numbers, static_cast<int>(begin), unit, leaf_size);
-            begin = end;
+        };
+        for (std::size_t begin = first_round; begin < order_.size(); begin *= growth) {
+            add_round(begin, std::min(growth * begin, order_.size()));
+        }
+        if (order_.size() > first_round) {
+            add_round(0, order_.size());
         }
     }
 
-    // All planes, most of them after their neighbours: cut in this order, faces find at hand what they are cut by.
+    // All planes, neighbours after one another: cut in this order, faces find at hand what they are cut by.
     std::vector<int> by_neighborhood() const {
-        std::vector<int> numbers(order_.begin(), end_of_first_round());
-        for (const PlaneTree& round : rounds_) {
-            round.for_each([&](int place) { numbers.push_back(number_at(place)); });
+        if (rounds_.empty()) {
+            return order_;
         }
+        std::vector<int> numbers;
+        numbers.reserve(order_.size());
+        rounds_.back().for_each([&](int place) { numbers.push_back(number_at(place)); });
         return numbers;
     }
 
     // Cut a face by all planes. A huge face counts as missed by planes that take less of it than the noise of its far
-    // corners; so it is cut once more by those that affect what is left.
+    // corners; so the last round is one of all planes again.
     void cut(Face& face) const {
+        cut_by_first(face);
+        if (rounds_.empty()) {
+            cut_by_first(face);
+        }
         std::vector<int> places;
-        for (int turn = 0; turn < 2; ++turn) {
-            std::for_each(order_.begin(), end_of_first_round(), [&](int k) { face.cut_by(k); });
-            for (const PlaneTree& round : rounds_) {
-                cut(face, round, places);
+        for (const PlaneTree& round : rounds_) {
+            if (face.empty()) {
+                return;
+            }
+            places.clear();
+            round.for_each_near(face.outline(), [&](int place) {
+                if (face.affected_by(number_at(place))) {
+                    places.push_back(place);
+                }
+            });
+            std::sort(places.begin(), places.end());
+            for (const int place : places) {
+                face.cut_by(number_at(place));
             }
         }
     }
 
  private:
+    // So few planes are tried one after another more quickly.
     static constexpr std::size_t first_round = 64;
     static constexpr std::size_t growth = 4;
 
-    std::vector<int>::const_iterator end_of_first_round() const {
-        return order_.begin() + static_cast<std::ptrdiff_t>(std::min(first_round, order_.size()));
-    }
-    void cut(Face& face, const PlaneTree& round, std::vector<int>& places) const {
-        if (face.empty()) {
-            return;
-        }
-        places.clear();
-        round.for_each_near(face.outline(), [&](int place) {
-            if (face.affected_by(number_at(place))) {
-                places.push_back(place);
-            }
-        });
-        std::sort(places.begin(), places.end());
-        for (const int place : places) {
-            face.cut_by(number_at(place));
+    void cut_by_first(Face& face) const {
+        for (std::size_t i = 0; i < std::min(first_round, order_.size()); ++i) {
+            face.cut_by(order_[i]);
         }
     }
     int number_at(int place) const { return order_[static_cast<std::size_t>(place)]; }
