@@ -43,6 +43,7 @@ check: .venv/.checkers
 figures: .venv/.installed
 	$(BIN)/python benchmarks/figures.py
 	$(BIN)/python benchmarks/growth.py
+	$(BIN)/python benchmarks/planes.py
 	mkdir -p docs
 	$(BIN)/whitted chart scenes/figure1.in -o docs/figure1.png
 
