@@ -29,6 +29,9 @@ from native_tracer.bvh import threaded_bvh
 SLACK = 2.0**-20
 """By how much, relatively, a distance to a box may be wrong: some roundings to single precision."""
 
+_LARGEST_EXPONENT = 1023
+"""Of a power of two that is a double."""
+
 
 class BvhSurfaces(ExactSurfaces):
     """Surfaces in a tree of single-precision boxes, which are rounded outward: what they let through is exact."""
@@ -143,7 +146,7 @@ def _octant(d: Any) -> Any:
 def _scale(surfaces: list[Surface]) -> float:
     """A power of two that makes the boxes so large that single precision holds them, and distances to them."""
     largest = max((abs(x) for s in surfaces if s.box is not None for corner in s.box for x in corner), default=0.0)
-    return math.ldexp(1.0, -math.frexp(largest)[1]) if largest > 0 else 1.0
+    return math.ldexp(1.0, min(-math.frexp(largest)[1], _LARGEST_EXPONENT)) if largest > 0 else 1.0
 
 
 def _nodes(surfaces: list[Surface], scale: float) -> tuple[Any, Any]:
