@@ -2,10 +2,12 @@
 
 #include "kernel.h"
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 
 #include "camera.h"
+#include "rounding.h"
 #include "trace.h"
 
 namespace whitted::WHITTED_ISA {
@@ -19,6 +21,7 @@ class PrimaryRays {
                 const Tile& tile)
         : camera_(camera),
           contact_(contact),
+          eye_error_(std::max({input_error(camera.eye().x), input_error(camera.eye().y), input_error(camera.eye().z)})),
           tile_(tile),
           grid_(settings.grid),
           shift_(settings.corner ? Real(0.5) : Real(0)),
@@ -37,10 +40,12 @@ class PrimaryRays {
         group.rays.origin = Vector<L>(camera_.eye());
         group.rays.direction =
             camera_.directions(columns + L(offset(sample_ % grid_)), rows + L(offset(sample_ / grid_)));
-        group.rays.t_min = Real(0);
+        group.rays.t_min = eye_error_;
         group.rays.object = contact_.object;
         group.rays.patch = contact_.patch;
         group.rays.inside = contact_.leads_inside(group.rays.direction);
+        group.rays.spread = least_spread<Real>;
+        group.rays.reach = max_norm(group.rays.origin);
         group.weight = Real(1);
         group.depth = 0;
         group.pixel = Indices<Real>((row_ - tile_.top) * (tile_.right - tile_.left) + column_ - tile_.left) +
@@ -69,6 +74,7 @@ class PrimaryRays {
 
     const Camera<Real>& camera_;
     const EyeContact<Real>& contact_;
+    const Real eye_error_;
     const Tile tile_;
     const int grid_;
     const Real shift_;

@@ -72,6 +72,10 @@ struct Mask {
 
     // The first `count` lanes.
     static Mask first(int count);
+
+    // Lane i is value_of(i).
+    template <typename ValueOf>
+    static Mask gather(ValueOf value_of);
 };
 
 template <typename Real>
@@ -142,6 +146,12 @@ struct Indices {
 template <typename Real>
 Mask<Real> Mask<Real>::first(int count) {
     return Indices<Real>::numbers() < Indices<Real>(count);
+}
+
+template <typename Real>
+template <typename ValueOf>
+Mask<Real> Mask<Real>::gather(ValueOf value_of) {
+    return Indices<Real>::gather([&](int lane) { return value_of(lane) ? -1 : 0; }) < Indices<Real>(0);
 }
 
 template <typename Real>
@@ -254,7 +264,7 @@ Lanes<Real> max(Lanes<Real> a, Lanes<Real> b) {
 
 template <typename Real>
 Lanes<Real> abs(Lanes<Real> a) {
-    return max(a, -a);
+    return each<Lanes<Real>>([](auto x) { return Register<Real>::abs(x); }, a);
 }
 
 // base^exponent, neither negative; 0^0 is 1. Whole exponents are multiplied out, in 2 log2(exponent) steps at most: a

@@ -15,16 +15,25 @@ namespace whitted::WHITTED_ISA {
 template <typename Real>
 struct Rays {
     Vector<Lanes<Real>> origin, direction;  // directions are unit vectors
-    Lanes<Real> t_min;                      // a hit on anything but `object` counts when it is farther
+    Lanes<Real> t_min;                      // how far the origin may be off; a hit on anything but `object` is farther
     Indices<Real> object, patch;            // what the ray starts on; -1: nothing
     Mask<Real> inside;                      // it travels inside `object`
+    Lanes<Real> spread;                     // how far the direction may be off, see rounding.h
+    Lanes<Real> reach;                      // no coordinate of the origin is larger
 };
 
-// A bound of the rounding error of points found at distance t of their rays. Some thirty operations on numbers of about
-// that size lead to a coordinate, each wrong by half an epsilon at most; 32 epsilon is twice their sum.
+// A bound of the rounding error of points found at distance t of their rays, `reach` being their largest coordinate.
+// Some thirty operations on numbers of about that size lead to a coordinate, each wrong by half an epsilon at most; 32
+// epsilon is twice their sum.
 template <typename Real>
-Lanes<Real> rounding_error(const Vector<Lanes<Real>>& point, Lanes<Real> t) {
-    return Lanes<Real>(32 * std::numeric_limits<Real>::epsilon()) * (max_norm(point) + t);
+Lanes<Real> rounding_error(Lanes<Real> reach, Lanes<Real> t) {
+    return Lanes<Real>(32 * std::numeric_limits<Real>::epsilon()) * (reach + t);
+}
+
+// No coordinate is larger that has such a rounding error.
+template <typename Real>
+Lanes<Real> reach_of(Lanes<Real> rounding_error) {
+    return Lanes<Real>(1 / (32 * std::numeric_limits<Real>::epsilon())) * rounding_error;
 }
 
 // Rays that are traced together, one to a lane. Nobody looks at the lanes that are not active.
@@ -50,6 +59,7 @@ template <typename Group, typename Visit>
     visit(group.rays.object);
     visit(group.rays.patch);
     visit(group.rays.inside);
+    visit(group.rays.spread);
     visit(group.weight);
     visit(group.depth);
     visit(group.pixel);
@@ -83,6 +93,7 @@ class RayStack {
             load(from, field);
             from += capacity_;
         });
+        group.rays.reach = reach_of(group.rays.t_min);
         group.active = Mask<Real>::first(static_cast<int>(std::min<std::size_t>(size_ - first, lane_count<Real>)));
         return group;
     }
@@ -103,7 +114,7 @@ class RayStack {
     struct Cell {
         Real value;  // or an integer
     };
-    static constexpr std::size_t fields = 14;
+    static constexpr std::size_t fields = 15;
 
     // Makes room for so many rays, and for a whole group behind them.
     void reserve(std::size_t rays) {

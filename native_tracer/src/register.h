@@ -9,6 +9,7 @@
 #include <cmath>
 #include <cstdint>
 #include <cstring>
+#include <limits>
 #if defined(__x86_64__)
 #include <immintrin.h>
 #endif
@@ -46,6 +47,7 @@ struct Register<double> {
     }
     static Reals min(Reals a, Reals b) { return _mm512_maskz_min_pd(0xFF, a, b); }
     static Reals max(Reals a, Reals b) { return _mm512_maskz_max_pd(0xFF, a, b); }
+    static Reals abs(Reals a) { return (Reals)((Integers)a & INT64_MAX); }
     static Reals sqrt(Reals a) { return _mm512_maskz_sqrt_pd(0xFF, a); }
     static Reals floor(Reals a) { return _mm512_maskz_roundscale_pd(0xFF, a, _MM_FROUND_FLOOR); }
 
@@ -77,6 +79,7 @@ struct Register<float> {
     }
     static Reals min(Reals a, Reals b) { return _mm512_maskz_min_ps(0xFFFF, a, b); }
     static Reals max(Reals a, Reals b) { return _mm512_maskz_max_ps(0xFFFF, a, b); }
+    static Reals abs(Reals a) { return (Reals)((Integers)a & INT32_MAX); }
     static Reals sqrt(Reals a) { return _mm512_maskz_sqrt_ps(0xFFFF, a); }
     static Reals floor(Reals a) { return _mm512_maskz_roundscale_ps(0xFFFF, a, _MM_FROUND_FLOOR); }
 
@@ -115,6 +118,7 @@ struct Vectors<float> {
 
 template <typename Real>
 struct Register : Vectors<Real> {
+    using typename Vectors<Real>::Integer;
     using typename Vectors<Real>::Integers;
     using typename Vectors<Real>::Reals;
     using Truths = Integers;  // 0 or -1
@@ -153,6 +157,7 @@ struct Register : Vectors<Real> {
     }
     static Reals min(Reals a, Reals b) { return a < b ? a : b; }
     static Reals max(Reals a, Reals b) { return a > b ? a : b; }
+    static Reals abs(Reals a) { return (Reals)((Integers)a & std::numeric_limits<Integer>::max()); }
     static Reals sqrt(Reals a) {
 #if defined(__AVX2__)
         if constexpr (sizeof(Real) == 8) {
@@ -230,6 +235,7 @@ struct Register<long double> {
     }
     static Reals min(Reals a, Reals b) { return a < b ? a : b; }
     static Reals max(Reals a, Reals b) { return a > b ? a : b; }
+    static Reals abs(Reals a) { return std::abs(a); }
     static Reals sqrt(Reals a) { return std::sqrt(a); }
     static Reals floor(Reals a) { return std::floor(a); }
 

@@ -13,6 +13,7 @@
 #include "description.h"
 #include "incidence.h"
 #include "pigment.h"
+#include "rounding.h"
 #include "search.h"
 #include "surface.h"
 #include "tree.h"
@@ -70,10 +71,11 @@ struct EyeContact {
     int object = -1, patch = -1;
     std::vector<Vector<Real>> outward;  // of all the object's patches that the eye lies on
 
+    // Rays along a surface, too, for a body is closed.
     Mask<Real> leads_inside(const Vector<Lanes<Real>>& direction) const {
         Mask<Real> result = outward.empty() ? Mask<Real>::none() : ~Mask<Real>::none();
         for (const Vector<Real>& normal : outward) {
-            result &= dot(Vector<Lanes<Real>>(normal), direction) < Lanes<Real>(Real(0));
+            result &= dot(Vector<Lanes<Real>>(normal), direction) <= Lanes<Real>(least_spread<Real>);
         }
         return result;
     }
@@ -106,7 +108,8 @@ struct Surface {
     using L = Lanes<Real>;
     Mask<Real> hit;
     Vector<L> point, outward, normal;  // `normal` is turned toward the viewer
-    L error;                           // of `point`
+    L error;                           // a bound of `point`'s rounding error, for t_min
+    L lean;                            // how far the normal may be off
     Color<L> pigment;
     L ka, kd, ks, alpha, kr, kt, eta;
 };
@@ -121,7 +124,7 @@ void merge(Mask<Real> mask, const Surface<Real>& other, Surface<Real>& surface) 
     put(&S::normal);
     put(&S::error);
     put(&S::pigment);
-    for (const auto member : {&S::ka, &S::kd, &S::ks, &S::alpha, &S::kr, &S::kt, &S::eta}) {
+    for (const auto member : {&S::lean, &S::ka, &S::kd, &S::ks, &S::alpha, &S::kr, &S::kt, &S::eta}) {
         put(member);
     }
 }
@@ -149,11 +152,14 @@ struct Scene {
     Hits<Real> nearest_hit(const Rays<Real>& rays, Mask<Real> wanted, const View<Real>* view) const {
         Hits<Real> hits;
         Lanes<Real> limit = select(wanted, hits.t, Lanes<Real>(Real(-1)));
+        Lanes<Real> second = hits.t;
+        Mask<Real> close = Mask<Real>::none();
         const auto may_hit = [&](int sphere) {
             return !view || any((*view)[static_cast<std::size_t>(sphere)].may_be_hit(rays.direction));
         };
-        for_each_crossing(rays, limit, may_hit, [&](Indices<Real> object, const Crossing<Real>& crossing) {
+        for_each_crossing<Ties::found>(rays, limit, close, may_hit, [&](Indices<Real> object, const Crossing<Real>& crossing) {
             const Mask<Real> nearer = (crossing.t < hits.t) | ((crossing.t <= hits.t) & (object < hits.object));
+            second = min(second, max(crossing.t, hits.t));
             hits.t = select(nearer, crossing.t, hits.t);
             hits.object = select(nearer, object, hits.object);
             hits.patch = select(nearer, crossing.patch, hits.patch);
@@ -161,21 +167,96 @@ struct Scene {
             limit = min(hits.t, limit);
             return true;
         });
+        const Lanes<Real> range = Lanes<Real>(most_blur<Real>) * (hits.t + rays.reach);
+        close |= second - hits.t <= range;
+        close &= wanted;
+        if (any(close)) [[unlikely]] {
+            const Hits<Real> settled = nearest_hit_by_rules(rays, close);
+            hits.t = select(close, settled.t, hits.t);
+            hits.object = select(close, settled.object, hits.object);
+            hits.patch = select(close, settled.patch, hits.patch);
+            hits.inside = select(close, settled.inside, hits.inside);
+        }
         return hits;
     }
 
     // An object that is in the way of each ray before `distance`, or -1: nothing is; for the rays in `wanted`.
     Indices<Real> blocker(const Rays<Real>& rays, const Light<Real>& light, Lanes<Real> distance,
                           Mask<Real> wanted) const {
+        Mask<Real> close = Mask<Real>::none();
+        const auto may_hit = [&](int sphere, Mask<Real> open) {
+            return any(open & light.view[static_cast<std::size_t>(sphere)].may_block(rays, distance));
+        };
+        Indices<Real> blocker = find_blocker<Ties::found_in_the_way>(rays, light, distance, wanted, close, may_hit);
+        close &= wanted;
+        if (any(close)) [[unlikely]] {
+            blocker = select(close, blocker_by_rules(rays, light, distance, close), blocker);
+        }
+        return blocker;
+    }
+
+ private:
+    // What becomes of rays that meet two things at once, but for rounding errors.
+    enum class Ties { found, found_in_the_way, decided };
+
+    [[gnu::noinline]] Hits<Real> nearest_hit_by_rules(const Rays<Real>& rays, Mask<Real> wanted) const {
+        Hits<Real> hits;
+        Lanes<Real> limit = select(wanted, hits.t, Lanes<Real>(Real(-1)));
+        Mask<Real> close = wanted;
+        for_each_crossing<Ties::decided>(rays, limit, close, [](int) { return true; }, [&](Indices<Real> object, const Crossing<Real>& crossing) {
+            const Mask<Real> ties = tie(rays, hits, crossing);
+            const Mask<Real> nearer = select(ties, object < hits.object, crossing.t < hits.t);
+            hits.t = select(nearer, crossing.t, hits.t);
+            hits.object = select(nearer, object, hits.object);
+            hits.patch = select(nearer, crossing.patch, hits.patch);
+            hits.inside = select(nearer, crossing.inside, hits.inside);
+            limit = min(hits.t, limit);
+            return true;
+        });
+        hits.patch = Indices<Real>::gather([&](int lane) {
+            return wanted[lane] && hits.object[lane] >= 0 ? piece_met(rays, hits, lane) : hits.patch[lane];
+        });
+        return hits;
+    }
+
+    // The first of a body's patches that a ray meets where it has hit the body, at an edge or elsewhere.
+    int piece_met(const Rays<Real>& rays, const Hits<Real>& hits, int lane) const {
+        const int hit = hits.patch[lane];
+        const Real t = hits.t[lane];
+        const Vector<Real> direction = lane_of(rays.direction, lane);
+        const Vector<Real> p = lane_of(rays.origin, lane) + t * direction;
+        const Real t_error = distance_error(rays, lane, hit, t);
+        const bool starts_here = rays.object[lane] == hits.object[lane];
+        for (int k = objects[static_cast<std::size_t>(hits.object[lane])].first_patch; k < hit; ++k) {
+            const Patch<Real>& plane = patches[static_cast<std::size_t>(k)];
+            const Real slope = dot(plane.anchor, direction);
+            const Real error = blur(rays, lane, plane, t) + t_error * std::abs(slope);
+            const bool meets = hits.inside[lane] ? slope > rays.spread[lane] : slope < -rays.spread[lane];
+            if (meets && std::abs(dot(plane.anchor, p) + plane.size) <= error &&
+                !(starts_here && rays.patch[lane] == k)) {
+                return k;
+            }
+        }
+        return hit;
+    }
+
+    [[gnu::noinline]] Indices<Real> blocker_by_rules(const Rays<Real>& rays, const Light<Real>& light,
+                                                     Lanes<Real> distance, Mask<Real> wanted) const {
+        Mask<Real> close = wanted;
+        return find_blocker<Ties::decided>(rays, light, distance, wanted, close, [](int, Mask<Real>) { return true; });
+    }
+
+    template <Ties ties, typename MayHit>
+    [[gnu::always_inline]] Indices<Real> find_blocker(const Rays<Real>& rays, const Light<Real>& light,
+                                                      Lanes<Real> distance, Mask<Real> wanted, Mask<Real>& close,
+                                                      MayHit may_hit) const {
         Indices<Real> blocker = -1;
         Mask<Real> open = wanted;
         // Crossings beyond it do not matter.
         const Lanes<Real> nowhere = Real(-1);
         Lanes<Real> limit = select(open, distance, nowhere);
-        const auto may_hit = [&](int sphere) {
-            return any(open & light.view[static_cast<std::size_t>(sphere)].may_block(rays, distance));
-        };
-        for_each_crossing(rays, limit, may_hit, [&](Indices<Real> object, const Crossing<Real>& crossing) {
+        const auto may_block = [&](int sphere) { return may_hit(sphere, open); };
+        for_each_crossing<ties>(rays, limit, close, may_block, [&](Indices<Real> object, const Crossing<Real>& crossing) {
             const Mask<Real> blocked = open & (crossing.t < distance) & ~light.lies_at(crossing, rays.direction);
             blocker = select(blocked, object, blocker);
             open &= ~blocked;
@@ -185,13 +266,37 @@ struct Scene {
         return blocker;
     }
 
- private:
+    // The rays that cross an object at the distance of what they have hit, but for rounding errors.
+    Mask<Real> tie(const Rays<Real>& rays, const Hits<Real>& hits, const Crossing<Real>& crossing) const {
+        return Mask<Real>::gather([&](int lane) {
+            return std::isfinite(hits.t[lane]) && std::isfinite(crossing.t[lane]) &&
+                   std::abs(crossing.t[lane] - hits.t[lane]) <=
+                       distance_error(rays, lane, crossing.patch[lane], crossing.t[lane]) +
+                           distance_error(rays, lane, hits.patch[lane], hits.t[lane]);
+        });
+    }
+
+    // How far a ray's distance to a patch may be off.
+    Real distance_error(const Rays<Real>& rays, int lane, int index, Real t) const {
+        const Patch<Real>& patch = patches[static_cast<std::size_t>(index)];
+        const Vector<Real> direction = lane_of(rays.direction, lane);
+        const Vector<Real> outward =
+            patch.round ? normalize(lane_of(rays.origin, lane) + t * direction - patch.anchor) : patch.anchor;
+        return blur(rays, lane, patch, t) / std::abs(dot(outward, direction));
+    }
+
+    // How far a ray and a patch may be off from one another, at distance t.
+    static Real blur(const Rays<Real>& rays, int lane, const Patch<Real>& patch, Real t) {
+        return rays.t_min[lane] + patch.error_at(rays.reach)[lane] + std::abs(t) * rays.spread[lane];
+    }
+
     // Calls visit(object, crossing) for the objects that some ray crosses before `limit`, and maybe others, until it
     // returns false: the one place that knows how the objects are searched. visit may lower `limit`. Spheres outside
-    // the tree are passed over where may_hit(sphere) is false.
-    template <typename MayHit, typename Visit>
-    [[gnu::always_inline]] void for_each_crossing(const Rays<Real>& rays, const Lanes<Real>& limit, MayHit may_hit,
-                                                  Visit visit) const {
+    // the tree are passed over where may_hit(sphere) is false. Ties with a polyhedron's planes are decided, or the rays
+    // that have some are added to `close`.
+    template <Ties ties, typename MayHit, typename Visit>
+    [[gnu::always_inline]] void for_each_crossing(const Rays<Real>& rays, const Lanes<Real>& limit, Mask<Real>& close,
+                                                  MayHit may_hit, Visit visit) const {
         Crossing<Real> crossing;
         const auto cross_sphere = [&](int sphere) __attribute__((always_inline)) {
             const Sphere<Real>& s = spheres[static_cast<std::size_t>(sphere)];
@@ -200,7 +305,13 @@ struct Scene {
         const auto cross_polyhedra = [&](int polyhedron, int end) __attribute__((always_inline)) {
             for (; polyhedron < end; ++polyhedron) {
                 const Polyhedron<Real>& p = polyhedra[static_cast<std::size_t>(polyhedron)];
-                if (find_crossing(p, patches.data(), rays, crossing) && !visit(p.object, crossing)) {
+                bool crosses = true;
+                if constexpr (ties == Ties::decided) {
+                    crossing = find_crossing_by_rules(p, patches.data(), rays);
+                } else {
+                    crosses = find_crossing<ties == Ties::found>(p, patches.data(), rays, crossing, close);
+                }
+                if (crosses && !visit(p.object, crossing)) {
                     return false;
                 }
             }
@@ -236,7 +347,21 @@ Patch<Real> plane_of(const Quadruple& plane) {
     const int exponent = std::ilogb(std::max({std::abs(plane[0]), std::abs(plane[1]), std::abs(plane[2])}));
     const auto scaled = [&](std::size_t i) { return std::scalbn(plane[i], -exponent); };
     const Vector<Real> normal = vector_of<Real>({scaled(0), scaled(1), scaled(2)});
-    return {normal / length(normal), static_cast<Real>(scaled(3)) / length(normal), false};
+    const Real offset = static_cast<Real>(scaled(3)) / length(normal);
+    const bool along_axis = (normal.x != 0) + (normal.y != 0) + (normal.z != 0) == 1;
+    const Real slack = 4 * tie_epsilon<Real>;
+    if (along_axis) {
+        return {normal / length(normal), offset, false, input_error(offset), 0};
+    }
+    return {normal / length(normal), offset, false, slack * std::abs(offset), slack};
+}
+
+template <typename Real>
+Patch<Real> sphere_of(const SphereDescription& sphere) {
+    const Vector<Real> center = vector_of<Real>(sphere.center);
+    const Real radius = static_cast<Real>(sphere.radius);
+    const Real error = input_error(radius) + std::max({input_error(center.x), input_error(center.y), input_error(center.z)});
+    return {center, radius, true, error, 0, 1 / radius};
 }
 
 template <typename Real>
@@ -262,7 +387,7 @@ Scene<Real>::Scene(const SceneDescription& description, const SearchPlan& plan)
                            &pigments[static_cast<std::size_t>(object.pigment)],
                            static_cast<int>(patches.size())});
         if (const auto* sphere = std::get_if<SphereDescription>(&object.shape)) {
-            patches.push_back({vector_of<Real>(sphere->center), real(sphere->radius), true});
+            patches.push_back(sphere_of<Real>(*sphere));
         } else {
             for (const Quadruple& plane : std::get_if<PolyhedronDescription>(&object.shape)->planes) {
                 patches.push_back(plane_of<Real>(plane));
@@ -345,7 +470,7 @@ void Scene<Real>::add_shape(const SceneDescription& description, int object) {
         polyhedra.push_back({patch, static_cast<int>(polyhedron->planes.size()), object});
     } else {
         const Patch<Real>& sphere = patches[static_cast<std::size_t>(patch)];
-        spheres.emplace_back(sphere.anchor, sphere.size, object, patch);
+        spheres.emplace_back(sphere, object, patch);
     }
 }
 

@@ -14,6 +14,7 @@
 #include <limits>
 
 #include "ray.h"
+#include "rounding.h"
 #include "vector.h"
 
 namespace whitted::WHITTED_ISA {
@@ -32,19 +33,29 @@ struct Patch {
     Vector<Real> anchor;  // the sphere's centre, or the plane's outward unit normal
     Real size;            // the sphere's radius, or the plane's offset: inside is dot(normal, p) + offset <= 0
     bool round;
+    // How far it may be off, and by how much more for each unit of a coordinate.
+    Real error = 0, error_by_reach = 0;
+    Real curvature = 0;
+
+    // How far it may be off where rays of that reach are compared with it, see Rays.
+    Lanes<Real> error_at(Lanes<Real> reach) const {
+        return Lanes<Real>(error) + Lanes<Real>(error_by_reach) * reach;
+    }
 };
 
 template <typename Real>
 struct Sphere {
     Vector<Real> center;
     Real radius;
+    Real error;   // how far the surface may be off
     Real reach2;  // a line farther from the centre than its root misses, whatever was rounded
     int object, patch;
 
-    Sphere(const Vector<Real>& center_, Real radius_, int object_, int patch_)
-        : center(center_),
-          radius(radius_),
-          reach2(radius_ * radius_ * (1 + 32 * std::numeric_limits<Real>::epsilon())),
+    Sphere(const Patch<Real>& sphere, int object_, int patch_)
+        : center(sphere.anchor),
+          radius(sphere.size),
+          error(sphere.error),
+          reach2(radius * radius * (1 + 32 * std::numeric_limits<Real>::epsilon())),
           object(object_),
           patch(patch_) {}
 };
@@ -84,8 +95,12 @@ template <typename Real>
         return false;
     }
 
-    const L radius2 = L(sphere.radius) * L(sphere.radius);
+    const L radius = sphere.radius;
+    const L radius2 = radius * radius;
     const L discriminant = radius2 - across2;
+    // A ray that touches the sphere passes it by.
+    const L blur = rays.t_min + L(sphere.error) + abs(closest) * rays.spread;
+    const L touching = radius * min(blur + blur, L(most_blur<Real>) * radius);
     const L root = sqrt(max(discriminant, zero));
     const L q = closest + select(closest >= zero, root, -root);
     const L other = (dot(g, g) - radius2) / q;
@@ -93,7 +108,7 @@ template <typename Real>
     const L far = max(q, other);
     const Mask<Real> enters = near > rays.t_min;
     const L t = select(enters, near, select(far > rays.t_min, far, infinity));
-    crossing.t = select(discriminant >= zero, t, infinity);
+    crossing.t = select(discriminant > touching, t, infinity);
     crossing.patch = sphere.patch;
     crossing.inside = ~enters;
     if (any(starts_here)) {
@@ -152,58 +167,132 @@ class Sight {
 // ---- Convex polyhedron --------------------------------------------------------------------------------------------
 
 // The ray is inside all half-spaces between the largest t at which it enters one and the smallest at which it leaves
-// one. Planes may be few and close no volume: either bound may stay infinite. Where planes tie, the first one counts.
+// one. Planes may be few and close no volume: either bound may stay infinite.
 // Haines, "Fast Ray-Convex Polyhedron Intersection", Graphics Gems II, 1991.
-//
-// Returns false, with nothing said about where, if no ray crosses the polyhedron.
 template <typename Real>
-[[gnu::always_inline]] inline bool find_crossing(const Polyhedron<Real>& polyhedron, const Patch<Real>* planes,
-                                                 const Rays<Real>& rays, Crossing<Real>& crossing) {
+struct Passage {
+    using L = Lanes<Real>;
+    L enter = -std::numeric_limits<Real>::infinity();
+    L leave = std::numeric_limits<Real>::infinity();
+    Indices<Real> enter_patch = -1;
+    Indices<Real> leave_patch = -1;
+    Mask<Real> misses;
+};
+
+// Where rays cross a polyhedron through which they have the given passage; those `from_within` start on it.
+template <typename Real>
+Crossing<Real> crossing_of(const Passage<Real>& passage, const Rays<Real>& rays, Mask<Real> from_within) {
     using L = Lanes<Real>;
     const L zero = Real(0);
     const L infinity = std::numeric_limits<Real>::infinity();
+    const Mask<Real> enters = (passage.enter > rays.t_min) & ~from_within;
+    const L leave = select(from_within, max(passage.leave, zero),
+                           select(passage.leave > rays.t_min, passage.leave, infinity));
+    return {select(passage.misses, infinity, select(enters, passage.enter, leave)),
+            select(enters, passage.enter_patch, passage.leave_patch), ~enters};
+}
+
+// Decides ties by the format's rules: a ray along a plane neither enters nor leaves there, and is inside or outside by
+// its height; one that meets an edge hits, so that bodies which share the edge leave no gap.
+template <typename Real>
+[[gnu::noinline]] Crossing<Real> find_crossing_by_rules(const Polyhedron<Real>& polyhedron, const Patch<Real>* planes,
+                                                        const Rays<Real>& rays) {
+    using L = Lanes<Real>;
+    const L zero = Real(0);
     const Mask<Real> starts_here = rays.object == Indices<Real>(polyhedron.object);
     const Mask<Real> from_within = starts_here & rays.inside;
+    Passage<Real> passage;
+    passage.misses = starts_here & ~rays.inside;
+    L enter_error = zero;
+    L leave_error = zero;
+    const int end = polyhedron.first_plane + polyhedron.plane_count;
+    for (int k = polyhedron.first_plane; k < end; ++k) {
+        const Patch<Real>& plane = planes[k];
+        const Vector<L> normal(plane.anchor);
+        const L slope = dot(normal, rays.direction);
+        const L height = dot(normal, rays.origin) + L(plane.size);
+        const L error = rays.t_min + plane.error_at(rays.reach);
+        const Indices<Real> patch = k;
+        const L t = select(abs(height) <= error, zero, -height / slope);
+        const L t_error = (error + abs(t) * rays.spread) / abs(slope);
 
-    L t_enter = -infinity;
-    L t_leave = infinity;
-    Indices<Real> patch_enter = -1;
-    Indices<Real> patch_leave = -1;
-    Mask<Real> misses = starts_here & ~rays.inside;
-    if (all(misses)) {
+        const Mask<Real> along = abs(slope) <= rays.spread;
+        const Mask<Real> enters_last = ~along & (slope < zero) & (t > passage.enter);
+        const Mask<Real> leaves_first =
+            ~along & (slope > zero) & (t < passage.leave) & ~(from_within & (rays.patch == patch));
+        passage.enter = select(enters_last, t, passage.enter);
+        passage.leave = select(leaves_first, t, passage.leave);
+        passage.enter_patch = select(enters_last, patch, passage.enter_patch);
+        passage.leave_patch = select(leaves_first, patch, passage.leave_patch);
+        enter_error = select(enters_last, t_error, enter_error);
+        leave_error = select(leaves_first, t_error, leave_error);
+        passage.misses |= along & (height > error) & ~from_within;
+    }
+    passage.misses |= (passage.enter - passage.leave > enter_error + leave_error) & ~from_within;
+    return crossing_of(passage, rays, from_within);
+}
+
+// The same, faster, for rays that are far from ties; adds those that are not to `close`. A quotient is only taken where
+// a plane counts: where the end of the passage so far lies outside of it.
+//
+// Returns false, with nothing said about where, if no ray crosses the polyhedron.
+template <bool which_piece, typename Real>
+[[gnu::always_inline]] inline bool find_crossing(const Polyhedron<Real>& polyhedron, const Patch<Real>* planes,
+                                                 const Rays<Real>& rays, Crossing<Real>& crossing, Mask<Real>& close) {
+    using L = Lanes<Real>;
+    const L zero = Real(0);
+    const Mask<Real> starts_here = rays.object == Indices<Real>(polyhedron.object);
+    const Mask<Real> from_within = starts_here & rays.inside;
+    const Mask<Real> elsewhere = starts_here & ~rays.inside;
+    if (all(elsewhere)) {
         return false;
     }
+    const Indices<Real> own = select(from_within, rays.patch, Indices<Real>(-1));
+    Passage<Real> passage;
+    passage.misses = elsewhere;
+    Mask<Real> along = Mask<Real>::none();
+    L between_planes = std::numeric_limits<Real>::infinity();
 
     const int end = polyhedron.first_plane + polyhedron.plane_count;
     for (int k = polyhedron.first_plane; k < end; ++k) {
         const Patch<Real>& plane = planes[k];
         const Vector<L> normal(plane.anchor);
-        const L slope = dot(normal, rays.direction) + zero;  // never -0
+        const L slope = dot(normal, rays.direction);
         const L height = dot(normal, rays.origin) + L(plane.size);
         const L t = -height / slope;
         const Indices<Real> patch = k;
 
-        // A ray along the plane leaves it at -infinity if it runs outside, at +infinity if inside, and at no number,
-        // which compares with none, if within the plane itself.
-        const Mask<Real> entering = slope < zero;
-        const Mask<Real> enters_last = entering & (t > t_enter);
-        const Mask<Real> leaves_first = ~entering & (t < t_leave) & ~(from_within & (rays.patch == patch));
-        t_enter = select(enters_last, t, t_enter);
-        t_leave = select(leaves_first, t, t_leave);
-        patch_enter = select(enters_last, patch, patch_enter);
-        patch_leave = select(leaves_first, patch, patch_leave);
+        const Mask<Real> entering = slope < -rays.spread;
+        const Mask<Real> leaving = slope > rays.spread;
+        along |= ~(entering | leaving);
+        const Mask<Real> enters_last = entering & (t > passage.enter);
+        const Mask<Real> leaves_first = leaving & (t < passage.leave) & ~(own == patch);
+        if constexpr (which_piece) {
+            // No number before the first plane.
+            between_planes = min(abs(t - select(entering, passage.enter, passage.leave)), between_planes);
+        }
+        passage.enter = select(enters_last, t, passage.enter);
+        passage.leave = select(leaves_first, t, passage.leave);
+        passage.enter_patch = select(enters_last, patch, passage.enter_patch);
+        passage.leave_patch = select(leaves_first, patch, passage.leave_patch);
 
-        misses |= ((t_enter > t_leave) | (t_leave < rays.t_min)) & ~from_within;
-        if (all(misses)) {
-            return false;
+        passage.misses |= ((passage.enter > passage.leave) | (passage.leave < rays.t_min)) & ~from_within;
+        if (all(passage.misses)) {
+            break;
         }
     }
-
-    const Mask<Real> enters = (t_enter > rays.t_min) & ~from_within;
-    const L exit = select(from_within, max(t_leave, zero), select(t_leave > rays.t_min, t_leave, infinity));
-    crossing.t = select(misses, infinity, select(enters, t_enter, exit));
-    crossing.patch = select(enters, patch_enter, patch_leave);
-    crossing.inside = ~enters;
+    // Later planes only bring the ends of the passage farther apart.
+    const L gap = passage.enter - passage.leave;
+    const Mask<Real> at_edge = (gap > zero) & (gap <= L(most_blur<Real>) * (rays.reach + passage.enter));
+    close |= (along | at_edge) & ~elsewhere;
+    if (all(passage.misses)) {
+        return false;
+    }
+    crossing = crossing_of(passage, rays, from_within);
+    if constexpr (which_piece) {
+        close |= (between_planes <= L(most_blur<Real>) * (rays.reach + crossing.t)) &
+                 (crossing.t < L(std::numeric_limits<Real>::infinity()));
+    }
     return true;
 }
 

@@ -163,9 +163,17 @@ Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const H
             surface.point = p - (dot(anchor, p) + size) * anchor;
         }
         surface.normal = select(hits.inside, -surface.outward, surface.outward);
-        surface.error = rounding_error(surface.point, hits.t);
+        const L reach = max_norm(surface.point);
+        surface.error = rounding_error(reach, hits.t);
+        surface.lean = L(patch.curvature) * surface.error;
 
-        surface.pigment = color_at(*object.pigment, surface.point);
+        surface.pigment = color_at(*object.pigment, surface.point, [&] {
+            // A ray that is off meets the surface farther off the more it slants.
+            const L off = rays.t_min + patch.error_at(rays.reach) + hits.t * rays.spread;
+            const L across = off / abs(dot(surface.outward, rays.direction));
+            const L blur = L(2 * tie_epsilon<Real>) * reach + min(across, L(most_blur<Real>) * (reach + hits.t));
+            return coordinate_errors(surface.point, surface.outward, blur);
+        });
         const Finish<Real>& finish = object.finish;
         surface.ka = finish.ka;
         surface.kd = finish.kd;
@@ -196,14 +204,16 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
         return color;
     }
     // Shadow rays start on the viewer's side of the surface, as the reflected ray does.
-    Rays<Real> shadow_rays{surface.point, surface.normal, surface.error, hits.object, hits.patch, hits.inside};
+    Rays<Real> shadow_rays{surface.point, surface.normal, surface.error,         hits.object,
+                           hits.patch,    hits.inside,    L(least_spread<Real>), reach_of(surface.error)};
     for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
         const Light<Real>& light = scene_.lights[i];
         const Vector<L> path = Vector<L>(light.position) - surface.point;
         const L distance = length(path);
         const Vector<L> to_light = path * (one / distance);
         const L cosine = dot(surface.normal, to_light);
-        const Mask<Real> faces = answers & (cosine > zero) & ~light.grazes(hits.patch);
+        // A surface is not lit along itself.
+        const Mask<Real> faces = answers & (cosine > L(least_spread<Real>)) & ~light.grazes(hits.patch);
 
         Indices<Real> blocker = -1;
         if (any(faces)) {
@@ -263,8 +273,12 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
     const L cosine = -dot(direction, surface.normal);
     const Vector<L> mirrored = normalize(direction + L(2) * cosine * surface.normal);
 
+    const L mirrored_spread =
+        min(group.rays.spread + L(2) * surface.lean + L(least_spread<Real>), L(most_blur<Real>));
+
     Vector<L> bent = mirrored;
     Mask<Real> bent_inside = hits.inside;
+    L bent_spread = mirrored_spread;
     if (any(transmits)) {
         // Snell's law, with the ratio of the index on the ray's side to the index on the other: n1/n2 on the way in,
         // n2/n1 on the way out. Where it has no answer, the transmitted ray follows the mirror direction.
@@ -274,9 +288,15 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
         const Vector<L> refracted = eta * direction + (eta * cosine - sqrt(max(cosine2, zero))) * surface.normal;
         const L length2 = dot(refracted, refracted);
         // Of a ratio beyond all measure these may be no numbers, or 0.
-        const Mask<Real> total = ~((cosine2 >= zero) & (length2 > zero));
+        const L cosine_error = group.rays.spread + surface.lean;
+        const L critical = eta * eta * (L(2) * cosine * cosine_error + L(4 * tie_epsilon<Real>)) +
+                           L(4 * tie_epsilon<Real>);
+        const Mask<Real> total = ~((cosine2 >= -critical) & (length2 > zero));
         bent = select(total, mirrored, refracted * (one / sqrt(length2)));
         bent_inside = select(total, hits.inside, ~hits.inside);
+        const L steepest = L(2) * (one + eta) * (one + eta) / max(sqrt(max(cosine2, zero)), L(most_blur<Real>));
+        bent_spread = select(total, mirrored_spread,
+                             min(cosine_error * steepest + L(least_spread<Real>), L(most_blur<Real>)));
         observer_.total_reflection(group, transmits & total);
     }
 
@@ -289,9 +309,10 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
     successors.depth = group.depth + Indices<Real>(1);
     successors.pixel = group.pixel;
     successors.record = group.record;
-    const auto push = [&](RayKind kind, const Vector<L>& along, Mask<Real> inside, L weight, Mask<Real> followed,
-                          RayStack<Real>& stack, std::uint64_t& counter) {
+    const auto push = [&](RayKind kind, const Vector<L>& along, L spread, Mask<Real> inside, L weight,
+                          Mask<Real> followed, RayStack<Real>& stack, std::uint64_t& counter) {
         successors.rays.direction = along;
+        successors.rays.spread = spread;
         successors.rays.inside = inside;
         successors.weight = weight;
         successors.active = followed;
@@ -300,10 +321,11 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
         counter += static_cast<std::uint64_t>(count(followed));
     };
     if (any(reflects)) {
-        push(RayKind::reflected, mirrored, hits.inside, reflected_weight, reflects, reflected_, counts_->reflected);
+        push(RayKind::reflected, mirrored, mirrored_spread, hits.inside, reflected_weight, reflects, reflected_,
+             counts_->reflected);
     }
     if (any(transmits)) {
-        push(RayKind::transmitted, bent, bent_inside, transmitted_weight, transmits, transmitted_,
+        push(RayKind::transmitted, bent, bent_spread, bent_inside, transmitted_weight, transmits, transmitted_,
              counts_->transmitted);
     }
     for_each_distinct(successors.depth, reflects | transmits,

@@ -5,6 +5,7 @@
 
 #pragma once
 
+#include <algorithm>
 #include <array>
 #include <cstddef>
 #include <cstdint>
@@ -36,7 +37,8 @@ class BoxTest {
     // take part; planes that meet at sharp angles multiply them by up to `growth`. An origin may itself lie outside the
     // object that it is on, by less than t_min.
     BoxTest(const Rays<Real>& rays, Real growth, Real reach) {
-        const L error = L(32 * std::numeric_limits<Real>::epsilon()) * (max_norm(rays.origin) + L(reach));
+        // Boxes are wider still, for what ties with a hit has to be come to.
+        const L error = L(std::max(32 * std::numeric_limits<Real>::epsilon(), Real(0x1p-40))) * (rays.reach + L(reach));
         const L margin = L(growth) * (error + rays.t_min);
         const Vector<L> margins{margin, margin, margin};
         before_ = rays.origin + margins;

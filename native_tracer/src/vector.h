@@ -59,6 +59,11 @@ Vector<Lanes<Real>> select(Mask<Real> mask, const Vector<Lanes<Real>>& a, const 
     return {select(mask, a.x, b.x), select(mask, a.y, b.y), select(mask, a.z, b.z)};
 }
 
+template <typename Real>
+Vector<Lanes<Real>> absolute(const Vector<Lanes<Real>>& a) {
+    return {abs(a.x), abs(a.y), abs(a.z)};
+}
+
 // Largest magnitude of a coordinate.
 template <typename Real>
 Lanes<Real> max_norm(const Vector<Lanes<Real>>& a) {
