@@ -23,6 +23,9 @@ SQUARES = "P3 4 4 255" + "".join(
 )
 """What is in it: 4 x 4 texels, of which no two are alike."""
 
+_GLASS = 3
+"""The first body that is of glass, where some are."""
+
 Pixel = Literal["corner", "center"]
 
 
@@ -179,7 +182,7 @@ class _Maker:
     def _add_balls(self) -> None:
         """Balls that touch the floor, a box's top or side, or the ball before."""
         for _ in range(self.cast.balls):
-            radius = self._times(self.random.choice((0.5, 1, 1, 1.5)))
+            radius = self._times(self.random.choice((0.5, 1, 1, 1.5, 3)))
             way = self.random.random()
             before = self.bodies[-1] if self.bodies else None
             if isinstance(before, Ball) and way < 0.5:
@@ -220,7 +223,23 @@ class _Maker:
             place = list(add(body.center, scale(self.random.choice(SLANTS), body.radius)))
         return _rounded((place[0], place[1], place[2]))
 
+    def _any_ball(self) -> Ball:
+        return self.random.choice([body for body in self.bodies if isinstance(body, Ball)])
+
+    def _above(self, ball: Ball, direction: Vector) -> Vector:
+        """From where lines with a slope of 4/3, or of 3/4, touch the ball."""
+        thirds = round(ball.radius / self.unit, 6) in (1.5, 3)
+        distance = ball.radius * self.random.choice((1.25, 5 / 3 if thirds else 1.25))
+        return _rounded(add(ball.center, scale(direction, distance)))
+
     def _eye(self) -> Vector:
+        way = self.random.random()
+        if self.cast.glass and way < 0.2:
+            glass = self.bodies[_GLASS]
+            assert isinstance(glass, Block)
+            return _rounded(scale(add(glass.low, glass.high), 0.5))
+        if self.cast.balls and way < 0.3:
+            return self._above(self._any_ball(), (0, 0, 1))
         if self.cast.room:
             return self._any_place(3, 5) if self.random.random() < 0.7 else self._special_place()
         way = self.random.random()
@@ -258,6 +277,8 @@ class _Maker:
 
     def _light(self) -> Vector:
         way = self.random.random()
+        if self.cast.balls and way < 0.1:
+            return self._above(self._any_ball(), (0, 1, 0))
         if way < 0.4:
             return self._special_place()
         if way < 0.5:
@@ -284,7 +305,7 @@ class _Maker:
         if self.cast.mirrors:
             finishes.append(s.finish(f"0.1 0.2 0.2 100 {choice((0.3, 0.5, 0.7))} 0 0"))
         if self.cast.glass:
-            finishes.append(s.finish(f"0.1 0.1 0.2 100 {choice((0, 0.1))} {choice((0.5, 0.7))} {choice((1, 1.5, 0.67))}"))
+            finishes.append(s.finish(f"0.1 0.1 0.2 100 {choice((0, 0.1))} {choice((0.5, 0.7))} {choice((1, 1.5, 0.6, 0.8))}"))
         y = round(self.ground, 6)
         if not self.cast.room:
             s.polyhedron(choice(pigments[:2]), choice((matte, finishes[-1])), [(0, 1, 0, -y)])

@@ -1,11 +1,14 @@
 """Small scenes of ties: each meets those of its kind, and most of them at slanting numbers, too."""
 
+import tempfile
 from collections.abc import Callable
 from dataclasses import replace
+from functools import cache
 from pathlib import Path
 
 from converter.scene.model import Checker, Finish, Polyhedron, Scene, Texmap, Vector
 from converter.scene.settings import Settings
+from converter.studies.exact.tracer import ExactTracer, Pixel
 from converter.studies.families.scenes import GLOW, MATTE, WHITE, Body, box, camera, floor, light, scene, sphere
 
 RED, GREEN, BLUE = (0.9, 0.2, 0.1), (0.1, 0.8, 0.2), (0.1, 0.2, 0.9)
@@ -49,35 +52,41 @@ def slanting_box(near: float, far: float, left: float, right: float, low: float,
     )
 
 
-def texmap(folder: Path, p0: tuple[float, ...], p1: tuple[float, ...]) -> Texmap:
-    file = folder / "texels.ppm"
-    file.write_text(TEXELS, encoding="ascii")
-    return Texmap(file, p0, p1)
+@cache
+def _folder() -> tempfile.TemporaryDirectory[str]:
+    """A folder with the texture, kept as long as the process runs."""
+    folder = tempfile.TemporaryDirectory(prefix="whitted-")
+    Path(folder.name, "texels.ppm").write_text(TEXELS, encoding="ascii")
+    return folder
+
+
+def texmap(p0: tuple[float, ...], p1: tuple[float, ...]) -> Texmap:
+    return Texmap(Path(_folder().name, "texels.ppm"), p0, p1)
 
 
 def _tiles(size: float, eye: Vector, along: Vector = LEVEL, height: float = 0.0):
-    return lambda _: scene(view(eye, along), [(floor(height), checker(size), GLOW)])
+    return lambda: scene(view(eye, along), [(floor(height), checker(size), GLOW)])
 
 
 def _texels(eye: Vector, along: Vector, scale: float):
-    def made(folder: Path) -> Scene:
-        pigment = texmap(folder, (scale, 0.0, 0.0, 0.0), (0.0, 0.0, scale, 0.25))
+    def made() -> Scene:
+        pigment = texmap((scale, 0.0, 0.0, 0.0), (0.0, 0.0, scale, 0.25))
         return scene(view(eye, along), [(floor(), pigment, GLOW)])
 
     return made
 
 
-def _balls_tiles(_: Path) -> Scene:
+def _balls_tiles() -> Scene:
     """The ray through the middle meets the ball's front, where two coordinates are whole, and the third, too."""
     return scene(view((0.0, 0.0, 4.0)), [(sphere((0.0, 0.0, 0.0), 1.5), checker(0.3), GLOW)])
 
 
-def _mirrored_tiles(_: Path) -> Scene:
+def _mirrored_tiles() -> Scene:
     bodies: list[Body] = [(wall((0.0, 1.0, 1.0), 3.0), WHITE, MIRROR), (wall((0.0, -1.0, 0.0), 0.9), checker(0.3), GLOW)]
     return scene(view((0.0, 0.0, 0.3)), bodies)
 
 
-def _mirrored_twice(_: Path) -> Scene:
+def _mirrored_twice() -> Scene:
     bodies: list[Body] = [
         (wall((1.0, 0.0, 1.0), 1.2), WHITE, MIRROR),
         (wall((-1.0, 0.0, 0.0), -3.0), WHITE, MIRROR),
@@ -88,10 +97,10 @@ def _mirrored_twice(_: Path) -> Scene:
 
 def _along(eye: Vector, along: Vector, *walls: tuple[Vector, float]):
     bodies: list[Body] = [(wall(*w), color, GLOW) for w, color in zip(walls, (RED, GREEN, BLUE), strict=False)]
-    return lambda _: scene(view(eye, along), bodies)
+    return lambda: scene(view(eye, along), bodies)
 
 
-def _mirrored_along(_: Path) -> Scene:
+def _mirrored_along() -> Scene:
     """The middle row is mirrored to run level, above a floor and below a roof."""
     bodies: list[Body] = [
         (wall((0.0, 1.0, 1.0), 0.0), WHITE, MIRROR),
@@ -101,26 +110,26 @@ def _mirrored_along(_: Path) -> Scene:
     return scene(view((0.0, 0.3, 0.9)), bodies)
 
 
-def _in_top(_: Path) -> Scene:
+def _in_top() -> Scene:
     return scene(view((0.1, 0.3, 3.0)), [(box((-2.0, -1.0, -1.0), (2.0, 0.3, 1.0)), RED, GLOW)])
 
 
-def _in_slanting_side(_: Path) -> Scene:
+def _in_slanting_side() -> Scene:
     return scene(view((0.0, 0.0, 0.0), SLANTING), [(slanting_box(5.0, 10.0, -3.0, 0.0, -2.0, 2.0), RED, GLOW)])
 
 
-def _edges(_: Path) -> Scene:
+def _edges() -> Scene:
     """Silhouettes at the slopes 1/2 and 1/3."""
     front = [box((-1.5, -1.0, -1.0), (1.5, 1.0, 0.0)), box((2.0, -1.5, -3.0), (3.0, 1.5, -0.5))]
     return scene(view((0.0, 0.0, 3.0)), [(body, RED, GLOW) for body in front])
 
 
-def _slanting_edges(_: Path) -> Scene:
+def _slanting_edges() -> Scene:
     bodies: list[Body] = [(slanting_box(15.0, 20.0, -7.5, 7.5, -1.0, 1.0), RED, GLOW)]
     return scene(view((0.0, 0.0, 0.0), SLANTING), bodies)
 
 
-def _grid(_: Path) -> Scene:
+def _grid() -> Scene:
     """Boxes that share edges only, before black: no gap between them."""
     cells = [(-1, -1), (0, 0), (1, 1), (-1, 1), (1, -1)]
     bodies: list[Body] = [
@@ -130,19 +139,19 @@ def _grid(_: Path) -> Scene:
     return scene(view((0.0, 0.0, 3.0)), bodies)
 
 
-def _seen_edge(_: Path) -> Scene:
+def _seen_edge() -> Scene:
     """The wedge's edge is before the eye, one of its sides in light."""
     wedge = Polyhedron(((-1.0, 0.0, 1.0, 2.0), (1.0, 0.0, 1.0, 2.0), (0.0, 0.0, -1.0, -9.0)))
     return scene(view((0.0, 0.1, 0.3)), [(wedge, WHITE, MATTE)], [light((9.0, 0.5, 0.7))])
 
 
-def _corner_of_room(_: Path) -> Scene:
+def _corner_of_room() -> Scene:
     """The room's far edges are seen from within; the light is bright on one wall only."""
     room = box((-2.0, -2.0, -2.0), (2.0, 2.0, 2.0))
     return scene(view((0.0, 0.0, 1.0), SLANTING), [(room, WHITE, MATTE)], [light((1.5, 0.7, 0.3))])
 
 
-def _neighbours(_: Path) -> Scene:
+def _neighbours() -> Scene:
     bodies: list[Body] = [
         (box((0.0, -1.0, -1.0), (1.0, 0.0, 0.0)), RED, GLOW),
         (box((-1.0, -1.0, -1.0), (0.0, 0.0, 0.0)), GREEN, GLOW),
@@ -151,7 +160,7 @@ def _neighbours(_: Path) -> Scene:
     return scene(view((0.0, 0.0, 1.5)), bodies)
 
 
-def _floor_and_wall(_: Path) -> Scene:
+def _floor_and_wall() -> Scene:
     """They meet in a line that a row of rays meets, and the wall is the second of the file."""
     bodies: list[Body] = [
         (floor(-1.0), RED, MATTE),
@@ -161,7 +170,7 @@ def _floor_and_wall(_: Path) -> Scene:
     return scene(view((0.0, 0.0, 0.0)), bodies, [light((1.0, 2.0, 1.0))])
 
 
-def _ball_on_floor(_: Path) -> Scene:
+def _balls_that_touch() -> Scene:
     bodies: list[Body] = [
         (floor(-1.0), RED, MATTE),
         (sphere((0.0, 0.0, -3.0), 1.0), GREEN, MATTE),
@@ -170,7 +179,7 @@ def _ball_on_floor(_: Path) -> Scene:
     return scene(view((2.0, 0.0, -2.0), (-1.0, 0.0, 0.0)), bodies, [light((5.0, 3.0, -2.0))])
 
 
-def _light_in_planes(_: Path) -> Scene:
+def _light_in_planes() -> Scene:
     """In the floor, in a box's side, and in a slanting wall: dark, each, by its own light."""
     shiny = Finish(0.2, 0.5, 0.3, 0.0, 0.0, 0.0, 0.0)
     bodies: list[Body] = [
@@ -182,7 +191,7 @@ def _light_in_planes(_: Path) -> Scene:
     return scene(view((0.0, 1.3, 2.0)), bodies, lights)
 
 
-def _lights_on_bodies(_: Path) -> Scene:
+def _lights_on_bodies() -> Scene:
     """In a ceiling, on a corner of a box, and on top of a ball."""
     bodies: list[Body] = [
         (floor(-1.0), WHITE, MATTE),
@@ -193,38 +202,38 @@ def _lights_on_bodies(_: Path) -> Scene:
     return scene(view((0.0, 0.0, 1.0)), bodies, [light((0.3, 1.7, -1.1)), light((-0.9, 0.1, -2.3)), light((1.3, 0.4, -2.7))])
 
 
-def _shadow_edges(_: Path) -> Scene:
+def _shadow_edges() -> Scene:
     """Shadow rays through a box's edges, to places of the floor that rays meet; some begin at the box itself."""
     bodies: list[Body] = [(floor(0.0), WHITE, MATTE), (box((-1.0, 0.0, -1.0), (1.0, 1.0, 1.0)), RED, MATTE)]
     return scene(view((0.0, 4.0, 0.0), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0)), bodies, [light((0.0, 2.0, 0.0)), light((3.0, 1.0, 0.0))])
 
 
-def _light_where_a_ray_ends(_: Path) -> Scene:
+def _light_where_a_ray_ends() -> Scene:
     return scene(view((0.0, 1.0, 1.0)), [(floor(0.0), WHITE, MATTE)], [light((0.0, 0.0, -1.0)), light((0.5, 2.0, 0.0))])
 
 
-def _tangent(_: Path) -> Scene:
+def _tangent() -> Scene:
     """Rays at the slope 3/4 touch it."""
     return scene(view((0.0, 0.0, 5.0)), [(sphere((0.0, 0.0, 0.0), 3.0), RED, GLOW), (wall(LEVEL, -5.0), GREEN, GLOW)])
 
 
-def _small_tangent(_: Path) -> Scene:
+def _small_tangent() -> Scene:
     return scene(view((0.1, 0.3, 0.5)), [(sphere((0.1, 0.3, 0.0), 0.3), RED, GLOW)])
 
 
-def _tangent_shadow(_: Path) -> Scene:
+def _tangent_shadow() -> Scene:
     """The shadow of the ball has the radius 7.5, which rays meet at 4.5, 6."""
     bodies: list[Body] = [(floor(0.0), WHITE, MATTE), (sphere((0.0, 5.0, 0.0), 3.0), RED, MATTE)]
     return scene(view((6.0, 6.0, 4.5), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0)), bodies, [light((0.0, 10.0, 0.0))])
 
 
-def _critical(_: Path) -> Scene:
+def _critical() -> Scene:
     """From within glass, upward: the cone with the slope 3/4 runs along the surface, and meets no bottom."""
     bodies: list[Body] = [(floor(0.3), WHITE, DENSE), (floor(-4.0), RED, GLOW)]
     return scene(view((0.1, -0.9, 0.2), (0.0, 1.0, 0.0), (0.0, 0.0, -1.0)), bodies)
 
 
-def _shared_glass(_: Path) -> Scene:
+def _shared_glass() -> Scene:
     bodies: list[Body] = [(box((x, -1.0, -1.0), (x + 1.0, 1.0, 1.0)), color, CLEAR) for x, color in zip((-1.0, 0.0, 1.0), (RED, GREEN, BLUE), strict=True)]
     bodies.append((wall((0.0, 0.0, 1.0), 5.0), checker(0.5), GLOW))
     return scene(view((0.0, 0.0, 3.0)), bodies)
@@ -237,10 +246,10 @@ def _eye(eye: Vector, along: Vector = LEVEL):
         (box((-1.0, -1.0, -1.0), (0.0, 1.0, 1.0)), RED, GLOW),
         (box((0.0, -1.0, -1.0), (1.0, 1.0, 1.0)), GREEN, GLOW),
     ]
-    return lambda _: scene(view(eye, along), bodies)
+    return lambda: scene(view(eye, along), bodies)
 
 
-TIE_SCENES: dict[str, tuple[str, Callable[[Path], Scene], Settings]] = {
+TIE_SCENES: dict[str, tuple[str, Callable[[], Scene], Settings]] = {
     name: (kind, made, replace(SETTINGS, **changes))
     for name, kind, made, changes in (
         ("tile rows", "tile", _tiles(0.5, (0.0, 1.0, 0.0)), {}),
@@ -271,7 +280,7 @@ TIE_SCENES: dict[str, tuple[str, Callable[[Path], Scene], Settings]] = {
         ("corner of a room", "seen edge", _corner_of_room, {}),
         ("neighbours", "bodies", _neighbours, {}),
         ("floor and wall", "bodies", _floor_and_wall, {}),
-        ("ball on a floor", "bodies", _ball_on_floor, {}),
+        ("balls that touch", "tangent", _balls_that_touch, {}),
         ("lights in planes", "light in plane", _light_in_planes, {}),
         ("lights on bodies", "at light", _lights_on_bodies, {}),
         ("light where a ray ends", "light in plane", _light_where_a_ray_ends, {}),
@@ -286,4 +295,12 @@ TIE_SCENES: dict[str, tuple[str, Callable[[Path], Scene], Settings]] = {
         ("eye in the plane of faces", "in", _eye((0.0, 1.0, 3.0)), {}),
     )
 }  # fmt: skip
-"""By a name: the kind of tie that it is about, how it is made with textures in a folder, and settings."""
+"""By a name: the kind of tie that it is about, how its scene is made, and settings."""
+
+
+@cache
+def traced(name: str) -> list[list[Pixel]]:
+    """What is true of every pixel of one of them, by rows."""
+    _, make, settings = TIE_SCENES[name]
+    tracer = ExactTracer(make(), settings)
+    return [[tracer.pixel(x, y) for x in range(settings.width)] for y in range(settings.height)]
