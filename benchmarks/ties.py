@@ -3,8 +3,8 @@
     python benchmarks/ties.py            1,000 scenes, drawn by native, native-long-double and mitsuba
     python benchmarks/ties.py 40 --first 500 --methods native mitsuba-bvh --size 320 240
 
-The scenes are those of `scenes/round_numbers.py`; to see one of those named: `python scenes/round_numbers.py SEED F.in`.
-Every pair of methods is compared. Status 1: some pixels disagree.
+The scenes are those of `scenes/round_numbers.py`, which writes the one of a number to a file. Every pair of methods is
+compared. Status 1: some pixels disagree.
 """
 
 import argparse

@@ -305,7 +305,9 @@ class _Maker:
         if self.cast.mirrors:
             finishes.append(s.finish(f"0.1 0.2 0.2 100 {choice((0.3, 0.5, 0.7))} 0 0"))
         if self.cast.glass:
-            finishes.append(s.finish(f"0.1 0.1 0.2 100 {choice((0, 0.1))} {choice((0.5, 0.7))} {choice((1, 1.5, 0.6, 0.8))}"))
+            finishes.append(
+                s.finish(f"0.1 0.1 0.2 100 {choice((0, 0.1))} {choice((0.5, 0.7))} {choice((1, 1.5, 0.6, 0.8))}")
+            )
         y = round(self.ground, 6)
         if not self.cast.room:
             s.polyhedron(choice(pigments[:2]), choice((matte, finishes[-1])), [(0, 1, 0, -y)])

@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from tie_scenes import BLUE, CLEAR, GREEN, MIRROR, RED, SETTINGS, TIE_SCENES, checker, texmap, traced, view, wall
 
-from converter.compare.metrics import LIMIT
 from converter.renderers.native import NativeRenderer
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
@@ -74,7 +73,9 @@ def test_pictures_of_scenes_without_ties_are_those_of_long_double(name):
     assert np.abs(exact_picture(made, settings) - picture).max() < 1e-6
 
 
-@pytest.mark.parametrize("changes", [{"specular": "blinn"}, {"ior": "ratio"}, {"max_depth": 1}, {"cutoff": 0.3}], ids=str)
+@pytest.mark.parametrize(
+    "changes", [{"specular": "blinn"}, {"ior": "ratio"}, {"max_depth": 1}, {"cutoff": 0.3}], ids=str
+)
 def test_settings_are_obeyed(small_scene, changes):
     settings = replace(Settings(16, 12, pixel="center", cutoff=1 / 16), **changes)
     picture = np.asarray(NativeRenderer("long double").render(small_scene, settings).pixels)
@@ -116,7 +117,9 @@ def test_small_scenes_meet_their_ties(name):
 # ---- Rules
 
 
-@pytest.mark.parametrize(("z", "first"), [(-0.5, False), (-0.3, False), (0.0, True), (0.5, False), (0.7, False), (1.0, True)])
+@pytest.mark.parametrize(
+    ("z", "first"), [(-0.5, False), (-0.3, False), (0.0, True), (0.5, False), (0.7, False), (1.0, True)]
+)
 def test_a_tile_begins_at_its_whole_number(z, first):
     """The floor at 0 belongs to the tiles above it, and x = 0 to those beyond."""
     made = scene(view((0.0, 1.0, z), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0)), [(floor(0.0), checker(0.5), GLOW)])

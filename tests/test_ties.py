@@ -1,4 +1,4 @@
-"""Numbers that decide something and are equal but for their roundings: every method decides as the format's rules say."""
+"""Numbers that decide something and are equal but for their roundings: every method follows the format's rules."""
 
 import importlib.util
 import subprocess
@@ -16,7 +16,8 @@ from converter.compare.metrics import LIMIT
 from converter.renderers.methods import METHODS
 from converter.scene.parser import load_scene, parse_scene
 from converter.scene.settings import Settings
-from converter.studies.exact.tracer import ExactTracer
+from converter.studies.exact.tracer import ExactTracer, exact_picture
+from converter.studies.families import ties
 
 ROOT = Path(__file__).resolve().parent.parent
 SCRIPT = ROOT / "scenes" / "round_numbers.py"
@@ -93,6 +94,54 @@ def test_scenes_of_round_numbers_agree(mi, round_numbers, folder):
     assert found == {}
 
 
+# ---- Far from the origin
+
+HOLDS = 1e10
+"""The distance from the origin, in pictures, up to which double precision knows the numbers of a scene well enough."""
+
+
+def held(family):
+    return [value for value in family.values if value <= HOLDS]
+
+
+@pytest.mark.parametrize("family", ties.FAMILIES, ids=lambda family: family.name)
+@pytest.mark.parametrize("method", ["native", "mitsuba"])
+def test_ties_are_decided_by_the_rules_far_from_the_origin(mi, family, method):
+    wrong = {}
+    for value in held(family):
+        case = family.case(value)
+        wrong[value] = int(disagreeing(drawn(case.scene, case.settings, method), case.truth).sum())
+    assert wrong == dict.fromkeys(held(family), 0)
+
+
+@pytest.mark.parametrize("family", ties.FAMILIES[:-1], ids=lambda family: family.name)  # the last stays where it is
+def test_scenes_far_from_the_origin_have_one_truth(family):
+    case = family.case(family.values[-1])
+    assert np.array_equal(exact_picture(case.scene, case.settings), case.truth)
+    assert len(np.unique(case.truth.reshape(-1, 3), axis=0)) > 1
+
+
+@pytest.mark.parametrize("family", ties.FAMILIES, ids=lambda family: family.name)
+def test_families_are_about_ties(family):
+    """Many pixels meet one; the kind that a family is named after is among them."""
+    kinds = {
+        "tie-tile": "tile",
+        "tie-texel": "texel",
+        "tie-along": "along",
+        "tie-in-plane": "in",
+        "tie-edge": "touched edge",
+        "tie-bodies": "bodies",
+        "tie-shadow": "at start",
+        "tie-tangent": "tangent",
+        "tie-critical": "critical",
+        "tie-mirrored": "tile",
+    }
+    case = family.case(family.values[0])
+    tracer = ExactTracer(case.scene, case.settings)
+    pixels = [tracer.pixel(x, y) for x in range(case.settings.width) for y in range(case.settings.height)]
+    assert sum(kinds[family.name] in pixel.ties for pixel in pixels) >= 7
+
+
 # ---- The scenes of round numbers themselves
 
 
@@ -119,12 +168,17 @@ def test_script(tmp_path):
     assert refused.stderr.endswith("no such file or directory\n")
 
 
+def compared(method, *options):
+    command = [sys.executable, ROOT / "benchmarks" / "ties.py", *options, "--methods", "native", method]
+    return subprocess.run(command, capture_output=True, text=True)
+
+
 def test_benchmark():
-    """One method agrees with itself, and float does not with double."""
-    command = [sys.executable, ROOT / "benchmarks" / "ties.py", "3", "--size", "16", "12", "--methods", "native"]
-    same = subprocess.run([*command, "native-brute"], capture_output=True, text=True)
+    """The native tracer agrees with itself, and not with one that follows no mirrored ray twice."""
+    same = compared("native-brute", "3", "--size", "16", "12")
     assert same.returncode == 0, same.stderr
     assert "native against native-brute: 0 pixels disagree, in 0 scenes" in same.stdout
-    other = subprocess.run([*command, "native-float"], capture_output=True, text=True)
+    other = compared("native-depth-1", "12", "--size", "32", "24")
     assert other.returncode == 1, other.stderr
-    assert "native against native-float: " in other.stdout
+    assert "native against native-depth-1: " in other.stdout
+    assert "\n  0: " in other.stdout

@@ -6,8 +6,8 @@ one that is not 0, made of a scene's few digits by some products and roots, is f
 is nothing that either explains, and ends the computation.
 """
 
-from decimal import Context, Decimal, localcontext
 from contextlib import AbstractContextManager, nullcontext
+from decimal import Context, Decimal, localcontext
 from fractions import Fraction
 from math import isqrt
 from typing import Any, Protocol
@@ -16,7 +16,7 @@ Number = Any
 """A Fraction or a Decimal; in one computation all are of one kind."""
 
 
-class Undecided(ArithmeticError):
+class Undecided(ArithmeticError):  # noqa: N818 - what it says
     """A number's sign, or its root, is not known."""
 
 

@@ -243,7 +243,8 @@ class ExactTracer:
         for share, following in self._secondary(ray, hit, point, normal, finish):
             if share > 0 and weight * share >= self._settings.cutoff and depth < self._max_depth:
                 color = [
-                    c + share * e for c, e in zip(color, self._color(following(), weight * share, depth + 1), strict=True)
+                    c + share * e
+                    for c, e in zip(color, self._color(following(), weight * share, depth + 1), strict=True)
                 ]
         return (color[0], color[1], color[2])
 
