@@ -129,6 +129,7 @@ class _Maker:
         self.unit = self.random.choice((1, 1, 1, 0.5, 2, 0.3))
         self.ground: float = self._times(self.random.choice((0, 0, -1, 1, -2, 3)))
         self.bodies: list[Body] = []
+        self.straight = False  # the eye has to look along an axis, with a tangent of 1, to meet what it is placed for
 
     def scene(self) -> RoundScene:
         if self.cast.room:
@@ -138,7 +139,7 @@ class _Maker:
         self._add_bars()
         eye = self._eye()
         look_at, up = self._view(eye)
-        fovy = self.random.choice((90, 90, 90, 90, 60, 45, 30))
+        fovy = 90 if self.straight else self.random.choice((90, 90, 90, 90, 60, 45, 30))
         pixel: Pixel = self.random.choice(("corner", "corner", "center"))
         s = RoundScene(pixel, f"Round numbers {self.seed}: {self.cast.name}", eye, look_at, up, fovy)
         for color in ((0.7, 0.65, 0.6), (0.3, 0.35, 0.4)):
@@ -235,10 +236,12 @@ class _Maker:
     def _eye(self) -> Vector:
         way = self.random.random()
         if self.cast.glass and way < 0.2:
+            self.straight = True
             glass = self.bodies[_GLASS]
             assert isinstance(glass, Block)
             return _rounded(scale(add(glass.low, glass.high), 0.5))
         if self.cast.balls and way < 0.3:
+            self.straight = True
             return self._above(self._any_ball(), (0, 0, 1))
         if self.cast.room:
             return self._any_place(3, 5) if self.random.random() < 0.7 else self._special_place()
@@ -257,6 +260,8 @@ class _Maker:
     def _view(self, eye: Vector) -> tuple[Vector, Vector]:
         """Where the eye looks, and what is up: along an axis, or a diagonal, or at a place of the lattice."""
         upright: Vector = (0, 1, 0)
+        if self.straight:
+            return _rounded(add(eye, (0, 0, -self.unit))), upright
         high = eye[1] - self.ground >= 5 * self.unit
         choices: tuple[Callable[[], Vector], ...] = (
             lambda: (0, 0, -1),
@@ -305,9 +310,8 @@ class _Maker:
         if self.cast.mirrors:
             finishes.append(s.finish(f"0.1 0.2 0.2 100 {choice((0.3, 0.5, 0.7))} 0 0"))
         if self.cast.glass:
-            finishes.append(
-                s.finish(f"0.1 0.1 0.2 100 {choice((0, 0.1))} {choice((0.5, 0.7))} {choice((1, 1.5, 0.6, 0.8))}")
-            )
+            ratio = choice((0.6, 0.8) if self.straight else (1, 1.5, 0.6, 0.8))
+            finishes.append(s.finish(f"0.1 0.1 0.2 100 {choice((0, 0.1))} {choice((0.5, 0.7))} {ratio}"))
         y = round(self.ground, 6)
         if not self.cast.room:
             s.polyhedron(choice(pigments[:2]), choice((matte, finishes[-1])), [(0, 1, 0, -y)])

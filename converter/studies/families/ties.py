@@ -200,7 +200,9 @@ FAMILIES = (
     _family("tie-in-plane", "Rays run in a side and in a top of slanting boxes: both are seen.", _in_plane),
     _family("tie-edge", "Rays touch the edges of a slanting box: it is seen.", _edge),
     _family("tie-bodies", "Rays meet two bodies where they meet: the first of the file is seen.", _bodies),
-    _family("tie-shadow", "Shadow rays touch the edges of a box, and are blocked, or start at it, and are not.", _shadow),
+    _family(
+        "tie-shadow", "Shadow rays touch the edges of a box, and are blocked, or start at it, and are not.", _shadow
+    ),
     _family("tie-tangent", "Rays touch a ball, and pass by.", _tangent, _ROUND),
     _family("tie-critical", "Rays leave glass at the critical angle, and run along its surface.", _critical, _ROUND),
     Family(
