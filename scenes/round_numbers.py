@@ -9,7 +9,7 @@ says. There are few casts of bodies, and scenes of one cast differ in numbers on
 
 import argparse
 import random
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
@@ -59,13 +59,13 @@ class Ball:
 
 
 @dataclass(frozen=True)
-class Prism:
-    """A bar without ends, or a wedge, whose sides are turned by 45 degrees."""
+class Bar:
+    """A bar without ends, whose sides lie at 45 degrees."""
 
     planes: tuple[Plane, ...]
 
 
-Body = Block | Ball | Prism
+Body = Block | Ball | Bar
 
 
 @dataclass(frozen=True)
@@ -73,8 +73,9 @@ class Cast:
     """How many bodies of each kind a scene has, and which finishes they may have.
 
     Attributes:
+        name: for the scene's first line.
         room: all is in a box that is seen from within; else there is a floor.
-        wall: a wall of texels at the back.
+        wall: there is a wall at the back.
         blocks, balls, bars: how many of each.
         mirrors, glass: some are.
 
@@ -120,7 +121,7 @@ def round_scene(seed: int) -> RoundScene:
 
 
 class _Maker:
-    """Makes one scene: all lengths are multiples of `unit`, or halves of them."""
+    """Makes one scene; all lengths are multiples of a unit or of a few parts of it."""
 
     def __init__(self, seed: int) -> None:
         self.random = random.Random(seed)
@@ -170,10 +171,9 @@ class _Maker:
         """Boxes of whole cells, most of which share a face, an edge or a corner with the one before."""
         cell = self._any_cell()
         for _ in range(self.cast.blocks):
-            size: Vector = tuple(self.random.choice((1, 1, 1, 2)) for _ in range(3))  # type: ignore[assignment]
-            if self.random.random() < 0.3:
-                size = tuple(self.random.choice((0.5, 1)) for _ in range(3))  # type: ignore[assignment]
-            self.bodies.append(Block(self._at(cell), self._at(add(cell, size))))
+            sizes = (0.5, 1) if self.random.random() < 0.3 else (1, 1, 1, 2)
+            width, height, depth = (self.random.choice(sizes) for _ in range(3))
+            self.bodies.append(Block(self._at(cell), self._at(add(cell, (width, height, depth)))))
             cell = add(cell, self.random.choice(STEPS)) if self.random.random() < 0.8 else self._any_cell()
             cell = (cell[0], max(cell[1], 0), cell[2])
 
@@ -209,7 +209,7 @@ class _Maker:
                 half = self._times(self.random.choice((0.5, 1, 1)))
                 planes.append((*normal, round(-middle - half, 6)))
                 planes.append((*scale(normal, -1), round(middle - half, 6)))
-            self.bodies.append(Prism(tuple(planes)))
+            self.bodies.append(Bar(tuple(planes)))
 
     # -- The eye and the lights
 
@@ -247,15 +247,16 @@ class _Maker:
             return self._any_place(3, 5) if self.random.random() < 0.7 else self._special_place()
         way = self.random.random()
         if way < 0.45:
-            eye = self._at((self.random.randint(-4, 4), self.random.randint(1, 5), self.random.randint(4, 8)))
-        elif way < 0.8:
-            x, y, z = self._special_place()
-            eye = (x, y, z) if self.random.random() < 0.4 else (x, y, self._times(self.random.randint(3, 6)))
-        elif way < 0.9:
-            eye = (*self._at((self.random.randint(-3, 3), 0, 0))[:2], self._times(self.random.randint(3, 6)))
-        else:
-            eye = self._at((self.random.randint(-2, 2), self.random.randint(5, 7), self.random.randint(-2, 2)))
-        return eye
+            return self._at((self.random.randint(-4, 4), self.random.randint(1, 5), self.random.randint(4, 8)))
+        if way < 0.6:
+            return self._special_place()
+        before = self._times(self.random.randint(3, 6))
+        if way < 0.8:
+            x, y, _ = self._special_place()
+            return (x, y, before)
+        if way < 0.9:
+            return (self._times(self.random.randint(-3, 3)), self.ground, before)
+        return self._at((self.random.randint(-2, 2), self.random.randint(5, 7), self.random.randint(-2, 2)))
 
     def _view(self, eye: Vector) -> tuple[Vector, Vector]:
         """Where the eye looks, and what is up: along an axis, or a diagonal, or at a place of the lattice."""
@@ -263,22 +264,18 @@ class _Maker:
         if self.straight:
             return _rounded(add(eye, (0, 0, -self.unit))), upright
         high = eye[1] - self.ground >= 5 * self.unit
-        choices: tuple[Callable[[], Vector], ...] = (
-            lambda: (0, 0, -1),
-            lambda: (0, 0, -1),
-            lambda: (-1 if eye[0] > 0 else 1, 0, 0),
-            lambda: (-1 if eye[0] > 0 else 1, 0, -1),
-            lambda: (self.random.choice((3, -3)), 0, -4),
-            lambda: (0, -1, -1),
-            lambda: (0, -3, -4),
-        )
         if high and self.random.random() < 0.6:
             return _rounded(add(eye, (0, -1, 0))), self.random.choice(((0, 0, -1), (1, 0, 0), (1, 0, -1)))
         if self.random.random() < 0.25:
             x, y, z = self._at((self.random.randint(-1, 1), self.random.randint(0, 2), self.random.randint(-2, 0)))
             if abs(eye[0] - x) + abs(eye[2] - z) > 0:
                 return (x, y, z), upright
-        return _rounded(add(eye, scale(self.random.choice(choices)(), self.unit))), upright
+        inward = -1 if eye[0] > 0 else 1
+        views: tuple[Vector, ...] = (
+            *((0, 0, -1), (0, 0, -1), (inward, 0, 0)),
+            *((inward, 0, -1), (3 * inward, 0, -4), (0, -1, -1), (0, -3, -4)),
+        )
+        return _rounded(add(eye, scale(self.random.choice(views), self.unit))), upright
 
     def _light(self) -> Vector:
         way = self.random.random()

@@ -182,6 +182,7 @@ def _moving(make: Callable[[], Scene], settings: Settings = _SETTINGS) -> Callab
     return lambda distance: Case(_moved(make(), distance), settings, truth())
 
 
+@cache
 def _mirrored(widths: float) -> Case:
     """All rays meet the edges of tiles, and neighbouring ones those of tiles of other colours."""
     made = _corridor(round(1.8 * widths, 6))
