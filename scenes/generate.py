@@ -283,9 +283,17 @@ class SceneText:
 
     script = "generate.py"
 
-    def __init__(self, comment: str, eye: Vector, look_at: Vector, fovy: float, ambient: Color = (1, 1, 1)) -> None:
+    def __init__(
+        self,
+        comment: str,
+        eye: Vector,
+        look_at: Vector,
+        fovy: float,
+        ambient: Color = (1, 1, 1),
+        up: Vector = (0, 1, 0),
+    ) -> None:
         self.comment = comment
-        self._camera = f"{numbers(eye)}\n{numbers(look_at)}\n0 1 0\n{number(fovy)}"
+        self._camera = f"{numbers(eye)}\n{numbers(look_at)}\n{numbers(up)}\n{number(fovy)}"
         self._lights = [f"0 0 0 {numbers(ambient)} 1 0 0"]
         self._pigments: list[str] = []
         self._finishes: list[str] = []

@@ -47,12 +47,17 @@ def _checker(cells: float) -> Case:
 
 
 @cache
-def _texture() -> tuple[Path, "tempfile.TemporaryDirectory[str]"]:
-    """A file of 2 x 2 texels, kept as long as the process runs: red and green above, blue and white below."""
-    folder = tempfile.TemporaryDirectory(prefix="whitted-")
-    file = Path(folder.name, "texture.ppm")
+def _folder() -> "tempfile.TemporaryDirectory[str]":
+    """A folder that is kept as long as the process runs."""
+    return tempfile.TemporaryDirectory(prefix="whitted-")
+
+
+@cache
+def texture_file() -> Path:
+    """A file of 2 x 2 texels: red and green above, blue and white below."""
+    file = Path(_folder().name, "texture.ppm")
     file.write_text("P3 2 2 255  255 0 0  0 255 0  0 0 255  255 255 255\n", encoding="ascii")
-    return file, folder
+    return file
 
 
 def _seam(repeats: float) -> Case:
@@ -63,7 +68,7 @@ def _seam(repeats: float) -> Case:
     x = eye[0] - d[..., 0] * np.longdouble(5.125) / d[..., 1]
     column = np.trunc(2 * (x + 64)) % 2
     texels = np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0]])
-    pigment = Texmap(_texture()[0], (1.0, 0.0, 0.0, 64.0), (0.0, 1.0, 0.0, 0.0))
+    pigment = Texmap(texture_file(), (1.0, 0.0, 0.0, 64.0), (0.0, 1.0, 0.0, 0.0))
     made = scene(view, [(floor(repeats), pigment, GLOW)])
     return Case(made, _SETTINGS, texels[column.astype(int)])
 
