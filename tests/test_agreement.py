@@ -58,6 +58,15 @@ def test_every_setting_agrees(mi, small_scene, changes, tmp_path):
     agree(small_scene, settings, MitsubaRenderer("llvm_ad_rgb"), tmp_path)
 
 
+def test_textures_agree_where_they_begin_again(mi, tmp_path):
+    """Rows of rays that meet whole repeats of an image: 49 / 49 is not 49 times its reciprocal."""
+    (tmp_path / "t49.ppm").write_bytes(b"P6 49 1 255\n" + b"\xff\0\0" + b"\xff" * 144)
+    scene = "0 0 10 0 0 0 0 1 0 30 1 0 0 0 1 1 1 1 0 0 1 texmap t49.ppm 1 0 0 0 0 0 0 0 1 1 0 0 1 0 0 0 1 0 0 "
+    scene += "polyhedron 1 0 0 1 0"
+    (tmp_path / "t49.in").write_text(scene)
+    agree(load_scene(tmp_path / "t49.in"), SETTINGS, MitsubaRenderer("llvm_ad_rgb"), tmp_path)
+
+
 def test_pictures_larger_than_one_band_agree(mi, small_scene, tmp_path):
     agree(small_scene, Settings(width=700, height=500), MitsubaRenderer("llvm_ad_rgb"), tmp_path)
 

@@ -9,6 +9,7 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
+from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.integrators.analytic import AnalyticSurfaces
 from mitsuba_plugins.integrators.bvh import BvhSurfaces
 from mitsuba_plugins.integrators.contacts import Contacts, EyeContact, LightContacts
@@ -185,7 +186,7 @@ class Whitted(mi.SamplingIntegrator):
         position, emission, (a, b, c) = self._lights.get(index, active)
         to_light = position - hit.p
         distance = dr.norm(to_light)
-        to_light = to_light / distance
+        to_light = quotient(to_light, distance)
         n = dr.select(hit.inside, -hit.n, hit.n)
         cosine = dr.dot(n, to_light)
         facing = active & (cosine > 0) & ~self._light_contacts.grazes(index, hit.record, active)
@@ -193,7 +194,7 @@ class Whitted(mi.SamplingIntegrator):
         attenuation = a + distance * (b + distance * c)
         # Masked at the end: a light at the hit itself has no direction, and nothing times no number is no number.
         lit = facing & (blocker == NOTHING)
-        irradiance = emission / mi.Float(attenuation)
+        irradiance = quotient(emission, mi.Float(attenuation))
         diffuse = (irradiance * color * (finish.kd * mi.Float(cosine))) & lit
         specular = mi.Color3f(0)
         if self.highlights:
@@ -210,7 +211,7 @@ class Whitted(mi.SamplingIntegrator):
 
     def transmitted(self, ray: Ray, hit: Hit, eta) -> tuple[Ray, Any]:
         """The refracted ray, or the mirrored one past the critical angle, and whether it is past."""
-        eta = dr.select(hit.inside, 1 / eta, eta)
+        eta = dr.select(hit.inside, quotient(1, eta), eta)
         n = dr.select(hit.inside, -hit.n, hit.n)
         d, total = refract(ray.d, n, eta)
         return self._tracer.spawn(hit, d, hit.inside == total), total
@@ -339,7 +340,7 @@ class Whitted(mi.SamplingIntegrator):
                     position = corner + mi.Point2d(dr.opaque(mi.Float64, x), dr.opaque(mi.Float64, y))
                     color += self.trace(self.primary_ray(sensor, position), True)
                     dr.eval(color)
-                color = color / len(offsets)
+                color = quotient(color, len(offsets))
                 dr.eval(color)
                 dr.sync_thread()
             yield first, color
@@ -366,7 +367,7 @@ class Whitted(mi.SamplingIntegrator):
             ray = start_ray(self.types, *sensor.primary_ray(position))
             return ray if self._eye_contact is None else self._eye_contact.start(ray)
         size, offset = sensor.film().crop_size(), sensor.film().crop_offset()
-        sample = mi.Point2f((position - mi.Point2d(offset)) / mi.Point2d(size))
+        sample = mi.Point2f(quotient(position - mi.Point2d(offset), mi.Point2d(size)))
         ray, _ = sensor.sample_ray(0.0, 0.5, sample, mi.Point2f(0.5))
         return start_ray(self.types, ray.o, unit(mi.Vector3d(ray.d)))
 
