@@ -265,7 +265,8 @@ HOST_DIVISIONS = {
     "integrators/analytic.py": {"_bound"},
     "integrators/contacts.py": {"of"},
     "integrators/geometry.py": {"_normalised"},
-    "integrators/whitted.py": {"__init__", "_bands", "sample_offsets"},
+    "integrators/pace.py": {"rows", "samples", "launch"},
+    "integrators/whitted.py": {"__init__", "_bands", "_corners", "sample_offsets"},
 }
 """Functions that divide Python's or NumPy's numbers, or whole numbers."""
 

@@ -60,11 +60,10 @@ class MitsubaRenderer:
 
         try:
             with _threads(settings.threads):
-                for first, color in integrator.bands(mitsuba_scene, mitsuba_scene.sensors()[0]):
+                sensor = mitsuba_scene.sensors()[0]
+                for first, color in integrator.bands(mitsuba_scene, sensor, progress=progress):
                     rows = np.moveaxis(np.asarray(color), 0, -1).reshape(-1, settings.width, 3)
                     pixels[first : first + len(rows)] = rows
-                    if progress is not None:
-                        progress((first + len(rows)) / settings.height)
         except KeyboardInterrupt:
             raise Interrupted(rendering()) from None
         return rendering()
