@@ -53,7 +53,7 @@ def test_most_of_the_time_goes_into_rays(clock, size, nanoseconds, branching):
                 done += count
             first += rows
         tracing = width * height * samples * nanoseconds * 1e-9
-        beginning = 8 + width * height // MOST_PIXELS[False]
+        beginning = 10 + width * height // MOST_PIXELS[False]
         assert launches * FIXED < 0.1 * tracing + beginning * FIXED, (samples, launches)
         assert longest < (6 if nanoseconds == 10_000 and not branching else 1.5), samples
 
