@@ -1,6 +1,6 @@
 """Prints the figures of the README: agreement of the renderers on every scene, why pixels disagree, speed, memory.
 
-    python benchmarks/figures.py [memory] [agreement] [classes] [speed]
+    python benchmarks/figures.py [memory] [agreement] [classes] [speed] [samples]
 
 Times are medians of runs that take turns, so that a machine whose speed drifts is fair to all; they depend on the
 machine, their ratios much less. POV-Ray joins where it is installed.
@@ -40,7 +40,7 @@ RUNS, FEW_RUNS = 11, 3
 def main() -> None:
     """Print what the command line names, or everything."""
     # Memory first: Linux counts what this process has held as held by those that it starts.
-    parts = {"memory": memory, "agreement": agreement, "classes": classes, "speed": speed}
+    parts = {"memory": memory, "agreement": agreement, "classes": classes, "speed": speed, "samples": samples}
     for name in sys.argv[1:] or parts:
         parts[name]()
         print()
@@ -122,6 +122,41 @@ def speed() -> None:
     for name, values in times.items():
         median = statistics.median(values)
         print(f"{name:<26}{median:>9.4f}{min(values):>9.4f}{povray / median:>30.1f} x")
+
+
+def samples() -> None:
+    """Seconds for more and more samples a pixel, and how often Mitsuba's kernel is launched for each."""
+    counts, width, height = (1, 16, 64, 256), 320, 240
+    print(f"{width} x {height}, {FEW_RUNS} runs in turn: median seconds by samples a pixel, and launches a sample")
+    print(f"{'':<22}{''.join(f'{count:>8}' for count in counts)}    launches{''.join(f'{n:>8}' for n in counts)}")
+    for name in ("figure1", "whitted", "brilliant"):
+        scene = load_scene(ROOT / "scenes" / f"{name}.in")
+        every = {count: Settings(width=width, height=height, samples=count) for count in counts}
+        for renderer in (NativeRenderer(), MitsubaRenderer()):
+            draw = {
+                str(count): lambda settings=settings, renderer=renderer: renderer.render(scene, settings)
+                for count, settings in every.items()
+            }
+            times = _interleaved({count: lambda f=f: f().seconds["render"] for count, f in draw.items()}, FEW_RUNS)
+            seconds = "".join(f"{statistics.median(values):>8.3f}" for values in times.values())
+            kind = "native" if isinstance(renderer, NativeRenderer) else "Mitsuba"
+            line = f"{name:<12}{kind:<10}{seconds}"
+            if kind == "Mitsuba":
+                per_sample = (_launches(f) / int(count) for count, f in draw.items())
+                line += f"{'':<12}{''.join(f'{number:>8.3f}' for number in per_sample)}"
+            print(line, flush=True)
+
+
+def _launches(draw: Callable[[], object]) -> int:
+    """How often Mitsuba's kernel that traces rays, the one of the most operations, runs for a picture."""
+    import drjit as dr
+
+    with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
+        dr.kernel_history_clear()
+        draw()
+        kernels = [entry for entry in dr.kernel_history() if entry["type"] == dr.KernelType.JIT]
+    most = max(kernel["operation_count"] for kernel in kernels)
+    return sum(kernel["operation_count"] == most for kernel in kernels)
 
 
 def memory() -> None:

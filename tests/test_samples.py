@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+from variant import VARIANT
 
 from converter.renderers.base import Interrupted
 from converter.renderers.mitsuba import MitsubaRenderer
@@ -72,7 +73,7 @@ def launches(dr, render):
 def test_launches_do_not_grow_with_the_samples(mi, clock, small_scene, intersections):
     import drjit as dr
 
-    renderer = MitsubaRenderer("llvm_ad_rgb", intersections)
+    renderer = MitsubaRenderer(VARIANT, intersections)
     counts = [
         launches(dr, lambda n=n: renderer.render(small_scene, Settings(width=32, height=24, samples=n)))
         for n in (1, 16, 256)
@@ -84,7 +85,7 @@ def test_samples_of_several_launches_add_up_to_the_same(mi, small_scene, monkeyp
     from mitsuba_plugins.integrators import pace
 
     settings = Settings(width=48, height=36, samples=9)
-    renderer = MitsubaRenderer("llvm_ad_rgb")
+    renderer = MitsubaRenderer(VARIANT)
     whole = np.asarray(renderer.render(small_scene, settings).pixels)
     monkeypatch.setattr(pace.Pace, "rows", lambda self, width: 7)
     monkeypatch.setattr(pace.Pace, "samples", lambda self, pixels: 2)
@@ -99,7 +100,7 @@ def test_every_launch_is_told(mi, small_scene, monkeypatch):
     monkeypatch.setattr(pace.Pace, "samples", lambda self, pixels: 3)
     told = []
     settings = Settings(width=48, height=36, samples=4)
-    MitsubaRenderer("llvm_ad_rgb").render(small_scene, settings, told.append)
+    MitsubaRenderer(VARIANT).render(small_scene, settings, told.append)
     assert told == pytest.approx([0.375, 0.5, 0.875, 1])
 
 
@@ -115,7 +116,7 @@ def test_ctrl_c_between_launches_leaves_the_finished_bands(mi, small_scene, monk
 
     settings = Settings(width=48, height=36, samples=4)
     with pytest.raises(Interrupted) as caught:
-        MitsubaRenderer("llvm_ad_rgb").render(small_scene, settings, stop)
+        MitsubaRenderer(VARIANT).render(small_scene, settings, stop)
     pixels = np.asarray(caught.value.partial.pixels)
     assert pixels[:18].all()
     assert not pixels[18:].any()
