@@ -23,7 +23,7 @@ import numpy as np
 
 from converter.compare.classes import CLASSES, Class, explain, less_exact
 from converter.compare.metrics import compare_pixels
-from converter.renderers.base import Renderer
+from converter.renderers.base import Renderer, Rendering
 from converter.renderers.methods import METHODS
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
@@ -127,33 +127,31 @@ def speed() -> None:
 def samples() -> None:
     """Seconds for more and more samples a pixel, and how often Mitsuba's kernel is launched for each."""
     counts, width, height = (1, 16, 64, 256), 320, 240
-    print(f"{width} x {height}, {FEW_RUNS} runs in turn: median seconds by samples a pixel, and launches a sample")
-    print(f"{'':<22}{''.join(f'{count:>8}' for count in counts)}    launches{''.join(f'{n:>8}' for n in counts)}")
-    for name in ("figure1", "whitted", "brilliant"):
+    heads = "".join(f"{count:>8}" for count in counts)
+    print(f"{width} x {height}, median seconds of {FEW_RUNS} runs in turn by samples a pixel, and launches a sample")
+    print(f"{'':<22}{heads}    launches{heads}")
+    for name in ("figure1", "whitted", "prisms"):
         scene = load_scene(ROOT / "scenes" / f"{name}.in")
-        every = {count: Settings(width=width, height=height, samples=count) for count in counts}
-        for renderer in (NativeRenderer(), MitsubaRenderer()):
-            draw = {
-                str(count): lambda settings=settings, renderer=renderer: renderer.render(scene, settings)
-                for count, settings in every.items()
-            }
-            times = _interleaved({count: lambda f=f: f().seconds["render"] for count, f in draw.items()}, FEW_RUNS)
-            seconds = "".join(f"{statistics.median(values):>8.3f}" for values in times.values())
-            kind = "native" if isinstance(renderer, NativeRenderer) else "Mitsuba"
-            line = f"{name:<12}{kind:<10}{seconds}"
+        for kind, renderer in (("native", NativeRenderer()), ("Mitsuba", MitsubaRenderer())):
+            draw = {n: partial(renderer.render, scene, Settings(width=width, height=height, samples=n)) for n in counts}
+            times = _interleaved({str(n): partial(_render_seconds, render) for n, render in draw.items()}, FEW_RUNS)
+            line = f"{name:<12}{kind:<10}" + "".join(f"{statistics.median(spent):>8.3f}" for spent in times.values())
             if kind == "Mitsuba":
-                per_sample = (_launches(f) / int(count) for count, f in draw.items())
-                line += f"{'':<12}{''.join(f'{number:>8.3f}' for number in per_sample)}"
+                line += f"{'':<12}" + "".join(f"{_launches(render) / n:>8.3f}" for n, render in draw.items())
             print(line, flush=True)
 
 
-def _launches(draw: Callable[[], object]) -> int:
+def _render_seconds(render: Callable[[], Rendering]) -> float:
+    return render().seconds["render"]
+
+
+def _launches(render: Callable[[], Rendering]) -> int:
     """How often Mitsuba's kernel that traces rays, the one of the most operations, runs for a picture."""
     import drjit as dr
 
     with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
         dr.kernel_history_clear()
-        draw()
+        render()
         kernels = [entry for entry in dr.kernel_history() if entry["type"] == dr.KernelType.JIT]
     most = max(kernel["operation_count"] for kernel in kernels)
     return sum(kernel["operation_count"] == most for kernel in kernels)

@@ -266,9 +266,10 @@ HOST_DIVISIONS = {
     "integrators/contacts.py": {"of"},
     "integrators/geometry.py": {"_normalised"},
     "integrators/pace.py": {"rows", "samples", "launch"},
+    "trial.py": {"_memory"},
     "integrators/whitted.py": {"__init__", "_bands", "_corners", "sample_offsets"},
 }
-"""Functions that divide Python's or NumPy's numbers, or whole numbers."""
+"""Functions that divide Python's or NumPy's numbers, or whole numbers, or build a path."""
 
 
 def test_no_kernel_divides_but_by_quotient():
