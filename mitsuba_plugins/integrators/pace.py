@@ -14,7 +14,7 @@ import mitsuba as mi
 SECONDS = 0.5
 """What a launch should take."""
 GROWTH = 8
-"""A launch has no more rays than this times the one before, since the top of a picture may be nothing but sky."""
+"""A launch has no more rays than this times the one before, for the top of a picture may be nothing but sky."""
 LEAST = 1 << 16
 """Primary rays of a launch, however long they take. Fewer take hardly less time, ..."""
 LEAST_BRANCHING = 1 << 10
@@ -49,5 +49,5 @@ class Pace:
         """Measure a launch of so many primary rays."""
         started = time.perf_counter()
         yield
-        share = SECONDS / max(time.perf_counter() - started, 1e-3)
-        self._rays = int(min(max(rays * min(share, GROWTH), self._least), MOST))
+        fitting = rays * SECONDS / max(time.perf_counter() - started, 1e-3)
+        self._rays = int(min(max(min(fitting, self._rays * GROWTH), self._least), MOST))

@@ -336,12 +336,16 @@ class Whitted(mi.SamplingIntegrator):
         """Colours of the pixels of whole rows from row `first` on, with those of some more samples added."""
         width = dr.width(color)
         corner = _corners(sensor.film(), first, width)
-        # Opaque, so that all numbers of samples share one kernel.
-        sample, end = dr.opaque(mi.UInt32, sample, width), dr.opaque(mi.UInt32, end)
-        while sample < end:
-            position = corner + dr.gather(mi.Point2d, offsets, sample)
-            color += self.trace(self.primary_ray(sensor, position), True)
-            sample += 1
+        if dr.hint(dr.width(offsets) == 2, mode="scalar"):
+            # One sample needs no loop, which takes twice as long to record.
+            color += self.trace(self.primary_ray(sensor, corner + dr.gather(mi.Point2d, offsets, mi.UInt32(0))), True)
+        else:
+            # Opaque, so that all numbers of samples share one kernel.
+            sample, end = dr.opaque(mi.UInt32, sample, width), dr.opaque(mi.UInt32, end)
+            while sample < end:
+                position = corner + dr.gather(mi.Point2d, offsets, sample)
+                color += self.trace(self.primary_ray(sensor, position), True)
+                sample += 1
         return color
 
     @staticmethod
