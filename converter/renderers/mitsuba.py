@@ -18,7 +18,7 @@ class MitsubaRenderer:
     """Draws through a scene description, a Mitsuba scene in memory, and the `whitted` integrator.
 
     Attributes:
-        variant: "llvm_ad_rgb", "cuda_ad_rgb", or "auto": CUDA where a device answers, else LLVM.
+        variant: "llvm_ad_rgb", "cuda_ad_rgb", or "auto": CUDA where a device passes its trial, else LLVM.
         intersections, precision: how the integrator finds what a ray hits, see its documentation.
         sphere_tolerance: with "offset" and "ulp", spheres are meshes, off by no more than this share of their radius.
 
