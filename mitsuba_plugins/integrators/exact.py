@@ -44,7 +44,7 @@ class Records:
         sphere, v, w = surface
         arm = self._types.Vector3(p) - v
         length = dr.norm(arm)
-        n = dr.select(sphere, dr.select(length == 0, along, quotient(arm, length)), v)
+        n = dr.select(sphere, dr.select(length == 0, along, arm * quotient(1, length)), v)
         on_sphere = self._types.Point3(v) + n * w
         on_plane = p - n * (dr.dot(n, p) + w)
         return self._types.Point3(dr.select(sphere, on_sphere, on_plane)), self._types.Vector3(n)

@@ -177,7 +177,7 @@ class Whitted(mi.SamplingIntegrator):
         position, emission, (a, b, c) = self._lights.get(index, active)
         to_light = position - hit.p
         distance = dr.norm(to_light)
-        to_light = quotient(to_light, distance)
+        to_light = to_light * quotient(1, distance)
         n = dr.select(hit.inside, -hit.n, hit.n)
         cosine = dr.dot(n, to_light)
         facing = active & (cosine > 0) & ~self._light_contacts.grazes(index, hit.record, active)
