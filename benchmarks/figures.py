@@ -1,6 +1,6 @@
 """Prints the figures of the README: agreement of the renderers on every scene, why pixels disagree, speed, memory.
 
-    python benchmarks/figures.py [memory] [agreement] [classes] [speed]
+    python benchmarks/figures.py [memory] [agreement] [classes] [speed] [samples]
 
 Times are medians of runs that take turns, so that a machine whose speed drifts is fair to all; they depend on the
 machine, their ratios much less. POV-Ray joins where it is installed.
@@ -23,7 +23,7 @@ import numpy as np
 
 from converter.compare.classes import CLASSES, Class, explain, less_exact
 from converter.compare.metrics import compare_pixels
-from converter.renderers.base import Renderer
+from converter.renderers.base import Renderer, Rendering
 from converter.renderers.methods import METHODS
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
@@ -40,7 +40,7 @@ RUNS, FEW_RUNS = 11, 3
 def main() -> None:
     """Print what the command line names, or everything."""
     # Memory first: Linux counts what this process has held as held by those that it starts.
-    parts = {"memory": memory, "agreement": agreement, "classes": classes, "speed": speed}
+    parts = {"memory": memory, "agreement": agreement, "classes": classes, "speed": speed, "samples": samples}
     for name in sys.argv[1:] or parts:
         parts[name]()
         print()
@@ -122,6 +122,39 @@ def speed() -> None:
     for name, values in times.items():
         median = statistics.median(values)
         print(f"{name:<26}{median:>9.4f}{min(values):>9.4f}{povray / median:>30.1f} x")
+
+
+def samples() -> None:
+    """Seconds for more and more samples a pixel, and how often Mitsuba's kernel is launched for each."""
+    counts, width, height = (1, 16, 64, 256), 320, 240
+    heads = "".join(f"{count:>8}" for count in counts)
+    print(f"{width} x {height}, median seconds of {FEW_RUNS} runs in turn by samples a pixel, and launches a sample")
+    print(f"{'':<22}{heads}    launches{heads}")
+    for name in ("figure1", "whitted", "prisms"):
+        scene = load_scene(ROOT / "scenes" / f"{name}.in")
+        for kind, renderer in (("native", NativeRenderer()), ("Mitsuba", MitsubaRenderer())):
+            draw = {n: partial(renderer.render, scene, Settings(width=width, height=height, samples=n)) for n in counts}
+            times = _interleaved({str(n): partial(_render_seconds, render) for n, render in draw.items()}, FEW_RUNS)
+            line = f"{name:<12}{kind:<10}" + "".join(f"{statistics.median(spent):>8.3f}" for spent in times.values())
+            if kind == "Mitsuba":
+                line += f"{'':<12}" + "".join(f"{_launches(render) / n:>8.3f}" for n, render in draw.items())
+            print(line, flush=True)
+
+
+def _render_seconds(render: Callable[[], Rendering]) -> float:
+    return render().seconds["render"]
+
+
+def _launches(render: Callable[[], Rendering]) -> int:
+    """How often Mitsuba's kernel that traces rays, the one of the most operations, runs for a picture."""
+    import drjit as dr
+
+    with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
+        dr.kernel_history_clear()
+        render()
+        kernels = [entry for entry in dr.kernel_history() if entry["type"] == dr.KernelType.JIT]
+    most = max(kernel["operation_count"] for kernel in kernels)
+    return sum(kernel["operation_count"] == most for kernel in kernels)
 
 
 def memory() -> None:

@@ -84,7 +84,8 @@ def set_variant(variant: str = "auto") -> str:
     """Choose a variant, load Mitsuba in it, register our plugins, and return the variant's name.
 
     Args:
-        variant: "llvm_ad_rgb", "cuda_ad_rgb", or "auto": CUDA where a device answers, else LLVM.
+        variant: "llvm_ad_rgb", "cuda_ad_rgb", or "auto": CUDA where a device answers and passes a trial, which takes
+            some seconds once; else LLVM.
 
     Raises:
         BackendError: the variant cannot run here, or is none that the plugins work in.
@@ -93,7 +94,7 @@ def set_variant(variant: str = "auto") -> str:
     if variant not in (*VARIANTS, "auto"):
         raise BackendError(f"variant '{variant}' is not supported: expected one of {', '.join(VARIANTS)}, auto")
     if variant == "auto":
-        variant = "cuda_ad_rgb" if has_cuda() else "llvm_ad_rgb"
+        variant = _automatic_variant()
     if variant == "llvm_ad_rgb":
         _prepare_llvm()
     elif not has_cuda():
@@ -104,9 +105,39 @@ def set_variant(variant: str = "auto") -> str:
         _check_llvm()
     if mitsuba.variant() != variant:
         mitsuba.set_variant(variant)
+    if variant == "cuda_ad_rgb":
+        _mind_ptxas()
     _start_worker()
     register()
     return variant
+
+
+@functools.cache
+def _automatic_variant() -> str:
+    """The variant that "auto" stands for; where a device answers, and is not used, the log says why."""
+    if not has_cuda():
+        return "llvm_ad_rgb"
+    import logging
+
+    from mitsuba_plugins.trial import cuda_trial
+
+    trial = cuda_trial()
+    if trial.works:
+        return "cuda_ad_rgb"
+    logging.getLogger("mitsuba_plugins").warning(
+        "Mitsuba draws on the CPU, since CUDA failed its trial: %s (whitted doctor tries again)", trial.told
+    )
+    return "llvm_ad_rgb"
+
+
+def _mind_ptxas() -> None:
+    """Leave out of kernels what the driver's compiler does not take together with calls, and aborts the process.
+
+    Dr.Jit keeps flags of its own for each thread.
+    """
+    import drjit
+
+    drjit.set_flag(drjit.JitFlag.SpillToSharedMemory, False)
 
 
 @functools.cache

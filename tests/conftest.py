@@ -3,6 +3,7 @@
 import signal
 
 import pytest
+import variant
 
 from converter.scene.model import Camera, Checker, Finish, Light, Object, Polyhedron, Scene, Solid, Sphere
 
@@ -11,12 +12,33 @@ if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     signal.signal(signal.SIGINT, signal.default_int_handler)
 
 
-@pytest.fixture(scope="session")
-def mi():
-    """Mitsuba in the LLVM variant with our plugins."""
+def pytest_addoption(parser):
+    choices = ("llvm_ad_rgb", "cuda_ad_rgb")
+    parser.addoption("--variant", choices=choices, default=variant.VARIANT, help="what Mitsuba runs on")
+
+
+def pytest_configure(config):
+    """Choose the variant before the test modules are imported, or say why it cannot be had."""
     import mitsuba_plugins
 
-    mitsuba_plugins.set_variant("llvm_ad_rgb")
+    variant.VARIANT = config.getoption("variant")
+    if variant.VARIANT != "llvm_ad_rgb":
+        try:
+            mitsuba_plugins.set_variant(variant.VARIANT)
+        except mitsuba_plugins.BackendError as error:
+            raise pytest.UsageError(str(error)) from error
+
+
+def pytest_report_header(config):
+    return f"Mitsuba's variant: {variant.VARIANT}"
+
+
+@pytest.fixture(scope="session")
+def mi():
+    """Mitsuba in the variant of the tests with our plugins."""
+    import mitsuba_plugins
+
+    mitsuba_plugins.set_variant(variant.VARIANT)
     import mitsuba
 
     return mitsuba

@@ -7,6 +7,7 @@ import math
 
 import numpy as np
 import pytest
+from variant import VARIANT
 
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
@@ -17,8 +18,8 @@ RENDERERS = {
     "native-float": (NativeRenderer("float"), 1e-4),
     "native-double": (NativeRenderer(), 1e-6),
     "native-long-double": (NativeRenderer("long double"), 1e-6),
-    "mitsuba-analytic": (MitsubaRenderer("llvm_ad_rgb", "analytic"), 1e-6),
-    "mitsuba-mesh": (MitsubaRenderer("llvm_ad_rgb", "mesh"), 1e-6),
+    "mitsuba-analytic": (MitsubaRenderer(VARIANT, "analytic"), 1e-6),
+    "mitsuba-mesh": (MitsubaRenderer(VARIANT, "mesh"), 1e-6),
 }
 """Renderers, and the relative error that their arithmetic excuses: the picture itself is in single precision."""
 

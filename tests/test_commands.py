@@ -12,6 +12,7 @@ from array import array
 from pathlib import Path
 
 import pytest
+from variant import VARIANT
 
 from converter.commands import exits, main, raytrace
 from converter.renderers.base import Interrupted, RendererUnavailable, Rendering
@@ -38,7 +39,7 @@ solid 0 0 1
 0 2 sphere 1.5 0 -2 .7
 1 1 sphere 0 -101.5 0 100
 """
-LLVM = ("--variant", "llvm_ad_rgb")
+ON_VARIANT = ("--variant", VARIANT)
 
 
 @pytest.fixture
@@ -711,10 +712,10 @@ def test_pixel_outside_the_picture(whitted, scene, x, y):
 
 
 def test_pixel_in_both_renderers(whitted, scene, mi):
-    status, out, _ = whitted("pixel", scene, 20, 14, 40, 30, *LLVM)
+    status, out, _ = whitted("pixel", scene, 20, 14, 40, 30, *ON_VARIANT)
     assert status == 0
     assert "\nno difference\n" in out
-    _, out, _ = whitted("pixel", scene, 20, 14, 40, 30, "--json", "-", "-q", *LLVM)
+    _, out, _ = whitted("pixel", scene, 20, 14, 40, 30, "--json", "-", "-q", *ON_VARIANT)
     trees = json.loads(out)
     assert list(trees) == ["native", "mitsuba"]
     assert all(tree["rays"][0]["hit"]["object"] == 0 for tree in trees.values())
@@ -742,7 +743,7 @@ def test_pixel_marks_and_tells_the_first_difference(whitted, scene, monkeypatch)
 
 def test_compare_both_renderers(whitted, scene, tmp_path, mi):
     png, file = tmp_path / "a.png", tmp_path / "a.json"
-    status, out, _ = whitted("compare", scene, 40, 30, "--repeat", 2, "--png", png, "--json", file, *LLVM)
+    status, out, _ = whitted("compare", scene, 40, 30, "--repeat", 2, "--png", png, "--json", file, *ON_VARIANT)
     assert status == 0
     assert "pixels that disagree  0 of 1200, 0 %" in out
     assert "warm (median of 2)" in out
@@ -856,7 +857,7 @@ def test_convert_makes_no_thousands_of_shapes(whitted, tmp_path, mi):
     assert "the `whitted` integrator alone sees them" in err
     assert "<shape" not in (tmp_path / "out" / "scene.xml").read_text()
     exported = np.asarray(mi.render(mi.load_file(str(tmp_path / "out" / "scene.xml"))))
-    rendered = MitsubaRenderer("llvm_ad_rgb").render(load_scene(file), Settings(width=80, height=60))
+    rendered = MitsubaRenderer(VARIANT).render(load_scene(file), Settings(width=80, height=60))
     assert np.array_equal(exported, rendered.pixels)
 
 
@@ -883,13 +884,13 @@ def test_doctor(whitted):
 
 
 def test_doctor_survives_what_aborts_its_child(monkeypatch):
-    from converter.commands import doctor_probe
+    from mitsuba_plugins import trial
 
     def dies(command, **_):
         return subprocess.CompletedProcess(command, -signal.SIGABRT, "", "LLVM ERROR: Cannot select\n")
 
     monkeypatch.setattr(subprocess, "run", dies)
-    assert doctor_probe.try_variant("llvm_ad_rgb") == doctor_probe.Trial(
+    assert trial.try_variant("llvm_ad_rgb") == trial.Trial(
         False, "the process dies of SIGABRT: LLVM ERROR: Cannot select"
     )
 

@@ -4,6 +4,7 @@ import errno
 
 import numpy as np
 import pytest
+from variant import VARIANT
 
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.scene.model import Texmap
@@ -30,7 +31,7 @@ def test_same_bits_as_render(mi, textured, tmp_path):
     files = export_scene(textured, settings, tmp_path / "out")
     assert [file.name for file in files if not file.exists()] == []
     exported = np.asarray(mi.render(mi.load_file(str(files[0]))))
-    rendered = MitsubaRenderer("llvm_ad_rgb").render(textured, settings)
+    rendered = MitsubaRenderer(VARIANT).render(textured, settings)
     assert np.array_equal(exported, rendered.pixels)
 
 
@@ -42,7 +43,7 @@ def test_merged_meshes(mi, small_scene, tmp_path, capfd):
     two = replace(small_scene, objects=(floor, replace(block, pigment=floor.pigment, finish=floor.finish)))
     settings = Settings(width=8, height=6)
     file = export_scene(two, settings, tmp_path / "out")[0]
-    rendered = MitsubaRenderer("llvm_ad_rgb").render(two, settings)
+    rendered = MitsubaRenderer(VARIANT).render(two, settings)
     assert np.array_equal(np.asarray(mi.render(mi.load_file(str(file)))), rendered.pixels)
 
     file.write_text(file.read_text().replace('name="intersections" value="auto"', 'name="intersections" value="mesh"'))
@@ -79,7 +80,7 @@ def test_meshes_too(mi, textured, tmp_path):
         files[0].read_text().replace('name="intersections" value="auto"', 'name="intersections" value="mesh"')
     )
     exported = np.asarray(mi.render(mi.load_file(str(files[0]), optimize=False)))
-    rendered = MitsubaRenderer("llvm_ad_rgb", "mesh").render(textured, settings)
+    rendered = MitsubaRenderer(VARIANT, "mesh").render(textured, settings)
     assert np.array_equal(exported, rendered.pixels)
 
 

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from variant import VARIANT
 
 from converter.compare.metrics import LIMIT
 from converter.renderers.methods import METHODS
@@ -33,7 +34,7 @@ EXACT += ("mitsuba-analytic-float", "mitsuba-mesh")
 
 
 def drawn(made, method, chosen=SETTINGS):
-    return np.asarray(METHODS[method].renderer("llvm_ad_rgb").render(made, chosen).pixels)
+    return np.asarray(METHODS[method].renderer(VARIANT).render(made, chosen).pixels)
 
 
 # ---- What lies on what

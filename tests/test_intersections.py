@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from variant import VARIANT
 
 from converter.compare.metrics import compare_pixels
 from converter.renderers.mitsuba import MitsubaRenderer
@@ -61,7 +62,7 @@ def disagreeing(renderer, scene: Scene, reference: Scene | None = None) -> int:
 @pytest.mark.parametrize("intersections", ["analytic", "bvh"])
 @pytest.mark.parametrize("scale", [2.0**-40, 2.0**-20, 2.0**-10, 2.0**10, 2.0**20, 2.0**40])
 def test_exact_at_every_scale(mi, small_scene, intersections, scale):
-    renderer = MitsubaRenderer("llvm_ad_rgb", intersections)
+    renderer = MitsubaRenderer(VARIANT, intersections)
     assert disagreeing(renderer, scaled(small_scene, scale), small_scene) == 0
 
 
@@ -71,14 +72,14 @@ def test_the_default_draws_the_same_picture_at_every_scale(mi, name, scale):
     """Of scenes with spheres in spheres, long ways between mirrors, and glass, by both ways that are default."""
     scene = load_scene(ROOT / "scenes" / f"{name}.in")
     # A scale that is no power of two moves edges by roundings, and a checker's boundaries with them.
-    assert disagreeing(MitsubaRenderer("llvm_ad_rgb"), scaled(scene, scale), scene) <= 2
+    assert disagreeing(MitsubaRenderer(VARIANT), scaled(scene, scale), scene) <= 2
 
 
 @pytest.mark.parametrize(("kind", "size"), [("sphereflake", "3"), ("gallery", "300")])
 def test_large_scenes(mi, tmp_path, kind, size):
     file = tmp_path / "large.in"
     subprocess.run([sys.executable, ROOT / "scenes" / "large.py", kind, size, file], check=True)
-    assert disagreeing(MitsubaRenderer("llvm_ad_rgb"), load_scene(file)) == 0
+    assert disagreeing(MitsubaRenderer(VARIANT), load_scene(file)) == 0
 
 
 @pytest.mark.parametrize(
@@ -94,7 +95,7 @@ def test_large_scenes(mi, tmp_path, kind, size):
 )
 def test_single_precision_draws_nearly_the_same(mi, small_scene, options, share):
     """Wrong where a rounding decides, and nowhere else: a face or a shadow gone would be more than this."""
-    wrong = disagreeing(MitsubaRenderer("llvm_ad_rgb", **options), small_scene)
+    wrong = disagreeing(MitsubaRenderer(VARIANT, **options), small_scene)
     assert wrong <= share * SETTINGS.width * SETTINGS.height
 
 
@@ -116,7 +117,7 @@ def test_pictures_of_all_sizes_share_one_kernel(mi, small_scene, intersections):
     """A kernel costs tenths of a second; so none depends on the size of a picture, nor on where NumPy puts a table."""
     import drjit as dr
 
-    renderer = MitsubaRenderer("llvm_ad_rgb", intersections)
+    renderer = MitsubaRenderer(VARIANT, intersections)
     kernels = set()
     with dr.scoped_set_flag(dr.JitFlag.KernelHistory, True):
         for width in range(32, 42):

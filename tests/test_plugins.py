@@ -1,10 +1,13 @@
 """The Mitsuba plugins one by one, each against a closed form."""
 
+import ast
 import math
+from pathlib import Path
 
 import numpy as np
 import pytest
 
+import mitsuba_plugins
 from converter.scene.settings import Settings
 
 
@@ -62,6 +65,21 @@ def test_checker_boundary_is_exact_in_double_precision(mi):
     assert texture.color_at(mi.Point3d(0.05, y, 0.05)).x[0] == expected
 
 
+def test_checker_divides_by_its_size(mi):
+    """0.3 / 0.1 lies below 3, and 0.3 times the reciprocal does not."""
+    texture = mi.load_dict(
+        {
+            "type": "solid_checker",
+            "first": {"type": "rgb", "value": [1.0, 0.0, 0.0]},
+            "second": {"type": "rgb", "value": [0.0, 1.0, 0.0]},
+            "size": 0.1,
+        }
+    )
+    x = np.arange(-5000, 5001) / 10
+    found = np.asarray(texture.color_at(mi.Point3d(mi.Float64(x), 0.05, 0.05)).x)
+    assert np.array_equal(found, np.floor(x / 0.1) % 2 == 0)
+
+
 def test_projected_bitmap_truncates_and_repeats(mi):
     texels = np.arange(12, dtype=np.float32).reshape(2, 2, 3)
     texture = mi.load_dict(
@@ -74,6 +92,24 @@ def test_projected_bitmap_truncates_and_repeats(mi):
     assert [texel(s, 0.0) for s in (0.0, 0.4, 0.5, 1.0, 1.6, -0.4, -0.5, -0.6, -1.1)] == [0, 0, 1, 0, 1, 0, 1, 1, 0]
     assert [texel(0.0, r) for r in (0.0, 0.4, 0.5, -0.4, -0.6)] == [0, 0, 2, 0, 2]
     assert texel(math.nan, 1e300) in (0, 1, 2, 3)
+
+
+def test_every_width_of_a_projected_bitmap_repeats_exactly(mi):
+    """Dr.Jit would multiply by the width's rounded reciprocal, and miss by a whole image."""
+    repeats = 4
+    for width in range(1, 2049):
+        texels = np.repeat(np.arange(width, dtype=np.float32), 3).reshape(1, width, 3)
+        texture = mi.load_dict(
+            {"type": "projected_bitmap", "data": mi.TensorXf(texels), "to_s": "1 0 0 0", "to_r": "0 0 0 0"}
+        )
+        whole = np.arange(-repeats * width, repeats * width + 1)
+        found = np.asarray(texture._wrap(mi.Float64(whole.astype(float)), texture.width))
+        assert np.array_equal(found, whole % width), width
+        # Numbers of which all products with the width are doubles.
+        sixteenths = np.arange(-16 * repeats, 16 * repeats + 1)
+        found = np.asarray(texture.color_at(mi.Point3d(mi.Float64(sixteenths / 16), 0, 0)).x)
+        position = np.abs(sixteenths) * width // 16 * np.sign(sixteenths)
+        assert np.array_equal(found, position % width), width
 
 
 # ---- The BSDF
@@ -200,6 +236,56 @@ def test_pinhole_sends_the_course_rays(mi):
 
 
 # ---- What Dr.Jit gets wrong
+
+
+def test_quotients_are_rounded_once(mi):
+    import drjit as dr
+
+    from mitsuba_plugins.arithmetic import quotient
+
+    rng = np.random.default_rng(1)
+    v, b = rng.normal(size=(3, 1000)), rng.normal(size=1000)
+    vector, scalar = mi.Vector3d(v), mi.Float64(b)
+    constant = mi.Float64(49)
+    for found, expected in (
+        (quotient(vector, scalar), v / b),
+        (quotient(vector, vector), v / v),
+        (quotient(vector, 49), v / 49),
+        (quotient(1, vector), 1 / v),
+        (quotient(scalar, 49), b / 49),
+        (quotient(scalar, constant), b / 49),
+        (quotient(mi.Float64(1), dr.full(mi.Float64, 49, 1000)), np.full(1000, 1 / 49)),
+        (quotient(7, constant), np.array([7 / 49])),
+    ):
+        assert np.array_equal(np.asarray(found), expected)
+    assert isinstance(quotient(mi.Point3d(v), scalar), mi.Point3d)
+
+
+HOST_DIVISIONS = {
+    "integrators/analytic.py": {"_bound"},
+    "integrators/contacts.py": {"of"},
+    "integrators/geometry.py": {"_normalised"},
+    "integrators/pace.py": {"rows", "samples", "launch"},
+    "trial.py": {"_memory"},
+    "integrators/whitted.py": {"__init__", "_bands", "_corners", "sample_offsets"},
+}
+"""Functions that divide Python's or NumPy's numbers, or whole numbers, or build a path."""
+
+
+def test_no_kernel_divides_but_by_quotient():
+    """A vector over a scalar, a reciprocal, or a divisor that is known when the kernel is recorded is inexact."""
+    folder = Path(mitsuba_plugins.__file__).parent
+    found = []
+    for file in sorted(folder.rglob("*.py")):
+        module = str(file.relative_to(folder))
+        for function in ast.walk(ast.parse(file.read_text())):
+            if not isinstance(function, ast.FunctionDef) or function.name in HOST_DIVISIONS.get(module, ()):
+                continue
+            for node in ast.walk(function):
+                divides = isinstance(getattr(node, "op", None), ast.Div | ast.FloorDiv | ast.Mod)
+                if divides or (isinstance(node, ast.Attribute) and node.attr in ("rcp", "rsqrt", "normalize")):
+                    found.append((module, function.name))
+    assert found == [("arithmetic.py", "quotient")]
 
 
 def test_drjit_exp2_in_double_precision_overflows_where_it_should_underflow(mi):

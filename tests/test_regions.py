@@ -6,6 +6,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from variant import VARIANT
 
 from converter.commands.main import main
 from converter.regions.warnings import REGIONS, method_warnings, region_warnings
@@ -271,7 +272,7 @@ class Here:
 
     def render(self, method, variant, scene, settings, seconds):
         try:
-            return np.asarray(METHODS[method].renderer("llvm_ad_rgb").render(scene, settings).pixels)
+            return np.asarray(METHODS[method].renderer(VARIANT).render(scene, settings).pixels)
         except ValueError as error:  # of nothing there is no mesh
             raise DrawingFailed(str(error)) from error
 

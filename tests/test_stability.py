@@ -11,6 +11,7 @@ from xml.etree import ElementTree
 
 import numpy as np
 import pytest
+from variant import VARIANT
 
 from converter.commands.main import main
 from converter.compare.metrics import LIMIT
@@ -243,7 +244,7 @@ def test_the_native_tracer_in_double_holds_for_six_decades_at_least(made):
 @pytest.mark.parametrize("intersections", ["auto", "bvh"])
 @pytest.mark.parametrize("made", FAMILIES.values(), ids=list(FAMILIES))
 def test_mitsuba_in_double_holds_for_three_decades_at_least(made, intersections):
-    renderer = MitsubaRenderer("llvm_ad_rgb", intersections)
+    renderer = MitsubaRenderer(VARIANT, intersections)
     start = easiest(made, made.values)
     for value in made.values:
         decades = 1e-3 * made.values[start] <= value <= 1e3 * made.values[start]
@@ -266,7 +267,7 @@ def test_a_family_holds_at_every_size(mi, made):
     start = easiest(made, made.values)
     for renderer, decades, powers in (
         (NativeRenderer(), 1e6, (-20, 20)),
-        (MitsubaRenderer("llvm_ad_rgb"), 1e3, (-10, 10)),
+        (MitsubaRenderer(VARIANT), 1e3, (-10, 10)),
     ):
         last = CHAOTIC.get(made.name, math.inf)
         held = [v for v in made.values if made.values[start] / decades <= v <= min(made.values[start] * decades, last)]

@@ -4,6 +4,7 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
+from variant import VARIANT
 
 from converter.compare.metrics import LIMIT
 from converter.renderers.mitsuba import MitsubaRenderer
@@ -59,7 +60,7 @@ def test_double_precision_holds(name):
 def test_mitsuba_holds_as_far(mi, name):
     family = FAMILIES[name]
     case = family.case(last_value(family))
-    rendering = MitsubaRenderer("llvm_ad_rgb").render(case.scene, case.settings)
+    rendering = MitsubaRenderer(VARIANT).render(case.scene, case.settings)
     assert disagreeing(rendering, truth_of(case)) == 0
 
 
@@ -84,7 +85,7 @@ def test_pictures_show_something(name):
     )  # fmt: skip
 
 
-@pytest.mark.parametrize("make", [NativeRenderer, lambda: MitsubaRenderer("llvm_ad_rgb")], ids=["native", "mitsuba"])
+@pytest.mark.parametrize("make", [NativeRenderer, lambda: MitsubaRenderer(VARIANT)], ids=["native", "mitsuba"])
 def test_progress_of_deep_trees_is_told_before_the_end(mi, make):
     """A tree of 2^10 rays a pixel: the first sign of life comes with little of the picture done."""
     case = FAMILIES["full-trees"].case(10.0)
@@ -108,7 +109,7 @@ def test_a_plate_too_thin_for_its_faces_to_be_known_is_drawn(mi):
     assert check_geometry(case.scene)
     truth = truth_of(case)
     for intersections in ("analytic", "bvh"):
-        rendering = MitsubaRenderer("llvm_ad_rgb", intersections).render(case.scene, case.settings)
+        rendering = MitsubaRenderer(VARIANT, intersections).render(case.scene, case.settings)
         assert disagreeing(rendering, truth) == 0
 
 

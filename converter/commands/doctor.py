@@ -53,9 +53,10 @@ def _packages() -> Iterator[tuple[str, str]]:
 
 def _findings() -> tuple[list[tuple[str, str]], list[str], bool]:
     """What was found, what to do about it, and whether both renderers work."""
-    from converter.commands.doctor_probe import cuda_device, try_native, try_variant
+    from converter.commands.doctor_probe import try_native
     from converter.renderers.native import available_cores
     from mitsuba_plugins.backend import MINIMUM_LLVM, VARIANTS, find_llvm
+    from mitsuba_plugins.trial import cuda_device, remember_cuda, try_variant
 
     rows = [("cores", str(available_cores()))]
     advice = []
@@ -76,18 +77,20 @@ def _findings() -> tuple[list[tuple[str, str]], list[str], bool]:
             continue
         trial = try_variant(variant)
         rows.append((variant, trial.told))
+        if variant == "cuda_ad_rgb":
+            remember_cuda(trial)
         if trial.works:
             working.append(variant)
         elif variant == "llvm_ad_rgb" and "LLVM" in trial.told:
             blames_llvm = True
-    default = "cuda_ad_rgb" if device else "llvm_ad_rgb"
-    if default not in working:
-        instead = f" Use --variant {working[0]} until it does." if working else ""
-        advice.append(f"Mitsuba runs in {default} by default, which does not work here.{instead}")
+    if device is not None and "cuda_ad_rgb" not in working:
+        advice.append("CUDA failed its trial: --variant auto takes llvm_ad_rgb.")
+    if not working:
+        advice.append("Mitsuba does not run here; the native tracer needs none of it: --method native.")
     if library is None or blames_llvm:
         advice.append(_llvm_advice(MINIMUM_LLVM))
     rows.append(("kernel cache", _kernel_cache()))
-    return rows, advice, native.works and default in working
+    return rows, advice, native.works and bool(working)
 
 
 def _llvm_advice(least: int) -> str:

@@ -42,6 +42,10 @@ def run(arguments: argparse.Namespace) -> int:
 
     check_json(arguments.json, [arguments.scene])
     quiet, settings = arguments.quiet, method.settings
+    if quiet:
+        import logging
+
+        logging.getLogger("mitsuba_plugins").setLevel(logging.ERROR)
     rendering, stages = draw(
         method.renderer, arguments.scene, arguments.out, settings, quiet, arguments.keep_partial, arguments.method
     )

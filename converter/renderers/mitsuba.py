@@ -18,7 +18,7 @@ class MitsubaRenderer:
     """Draws through a scene description, a Mitsuba scene in memory, and the `whitted` integrator.
 
     Attributes:
-        variant: "llvm_ad_rgb", "cuda_ad_rgb", or "auto": CUDA where a device answers, else LLVM.
+        variant: "llvm_ad_rgb", "cuda_ad_rgb", or "auto": CUDA where a device passes its trial, else LLVM.
         intersections, precision: how the integrator finds what a ray hits, see its documentation.
         sphere_tolerance: with "offset" and "ulp", spheres are meshes, off by no more than this share of their radius.
 
@@ -60,11 +60,10 @@ class MitsubaRenderer:
 
         try:
             with _threads(settings.threads):
-                for first, color in integrator.bands(mitsuba_scene, mitsuba_scene.sensors()[0]):
+                sensor = mitsuba_scene.sensors()[0]
+                for first, color in integrator.bands(mitsuba_scene, sensor, progress=progress):
                     rows = np.moveaxis(np.asarray(color), 0, -1).reshape(-1, settings.width, 3)
                     pixels[first : first + len(rows)] = rows
-                    if progress is not None:
-                        progress((first + len(rows)) / settings.height)
         except KeyboardInterrupt:
             raise Interrupted(rendering()) from None
         return rendering()

@@ -3,7 +3,8 @@
 import drjit as dr
 import mitsuba as mi
 
-from mitsuba_plugins.integrators.rays import power
+from mitsuba_plugins.arithmetic import quotient
+from mitsuba_plugins.integrators.rays import power, unit
 
 
 class Phong(mi.BSDF):
@@ -79,7 +80,7 @@ class Phong(mi.BSDF):
     def _highlight(self, wi, wo):
         """Cosine whose power is the highlight, for directions on the upper side."""
         if self.blinn:
-            return dr.maximum(dr.normalize(wi + wo).z, 0)
+            return dr.maximum(unit(wi + wo).z, 0)
         return dr.maximum(dr.dot(mi.reflect(wi), wo), 0)
 
     def _glossy_pdf(self, wi, wo):
@@ -87,10 +88,10 @@ class Phong(mi.BSDF):
         alpha = mi.Float(self.alpha)
         pdf = (alpha + 1) * dr.inv_two_pi * power(cosine, alpha)
         # A half vector's density becomes its direction's by d(omega_h) / d(omega_o) = 1 / (4 wo.h).
-        return pdf / (4 * dr.maximum(dr.dot(wo, dr.normalize(wi + wo)), 1e-6)) if self.blinn else pdf
+        return quotient(pdf, 4 * dr.maximum(dr.dot(wo, unit(wi + wo)), 1e-6)) if self.blinn else pdf
 
     def _sample_glossy(self, wi, sample):
-        cosine = dr.power(1 - sample.y, dr.rcp(mi.Float(self.alpha) + 1))
+        cosine = dr.power(1 - sample.y, quotient(1, mi.Float(self.alpha) + 1))
         sine = dr.safe_sqrt(1 - dr.square(cosine))
         s, c = dr.sincos(dr.two_pi * sample.x)
         around = mi.Vector3f(c * sine, s * sine, cosine)
@@ -120,7 +121,7 @@ class Phong(mi.BSDF):
         weights = self._weights(ctx)
         total = sum(weights, mi.Float(0))
         pdf = weights[0] * wo.z * dr.inv_pi + weights[1] * self._glossy_pdf(wi, wo)
-        return dr.select((wi.z > 0) & (wo.z > 0) & (total > 0), pdf / total, 0)
+        return dr.select((wi.z > 0) & (wo.z > 0) & (total > 0), quotient(pdf, total), 0)
 
     def sample(self, ctx, si, sample1, sample2, active=True):
         side = dr.select(si.wi.z < 0, mi.Float(-1), mi.Float(1))
@@ -133,7 +134,7 @@ class Phong(mi.BSDF):
             passed = at >= sum(weights[: i + 1], mi.Float(0))
             lobe = dr.select(passed, i + 1, lobe)
 
-        eta = dr.select(side > 0, mi.Float(self.eta), dr.rcp(mi.Float(self.eta)))
+        eta = dr.select(side > 0, mi.Float(self.eta), quotient(1, mi.Float(self.eta)))
         refracted, total_reflection = refract(wi, eta)
         wo = mi.warp.square_to_cosine_hemisphere(sample2)
         wo[lobe == 1] = self._sample_glossy(wi, sample2)
@@ -141,14 +142,14 @@ class Phong(mi.BSDF):
         wo[lobe == 3] = refracted
 
         delta = lobe >= 2
-        pdf = dr.select(delta, dr.select(lobe == 2, weights[2], weights[3]) / total, self._pdf(ctx, wi, wo))
-        value = dr.select(delta, mi.Color3f(total), self._eval(ctx, si, wi, wo, active) / pdf)
+        pdf = dr.select(delta, quotient(dr.select(lobe == 2, weights[2], weights[3]), total), self._pdf(ctx, wi, wo))
+        value = dr.select(delta, mi.Color3f(total), quotient(self._eval(ctx, si, wi, wo, active), pdf))
         valid = active & (total > 0) & (pdf > 0) & (delta | (wo.z > 0))
 
         bs = dr.zeros(mi.BSDFSample3f)
         bs.wo = mi.Vector3f(wo.x, wo.y, wo.z * side)
         bs.pdf = dr.select(valid, pdf, 0)
-        bs.eta = dr.select((lobe == 3) & ~total_reflection, dr.rcp(eta), 1)
+        bs.eta = dr.select((lobe == 3) & ~total_reflection, quotient(1, eta), 1)
         bs.sampled_component = lobe
         kinds = [mi.UInt32(int(kind)) for kind in self._kinds()]
         bs.sampled_type = dr.select(

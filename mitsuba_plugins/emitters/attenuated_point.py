@@ -3,6 +3,8 @@
 import drjit as dr
 import mitsuba as mi
 
+from mitsuba_plugins.arithmetic import quotient
+
 
 class AttenuatedPoint(mi.Emitter):
     r"""Attenuated point light (``attenuated_point``).
@@ -45,11 +47,11 @@ class AttenuatedPoint(mi.Emitter):
         ds.emitter = mi.EmitterPtr(self)
         ds.d = ds.p - it.p
         ds.dist = dr.norm(ds.d)
-        ds.d /= ds.dist
+        ds.d = quotient(ds.d, ds.dist)
         ds.n = mi.Normal3f(-ds.d)
         a, b, c = mi.Vector3f(self.attenuation)
         # Without the cosine, which the BSDF applies.
-        irradiance = dr.pi * self.color / (a + ds.dist * (b + ds.dist * c))
+        irradiance = quotient(dr.pi * self.color, a + ds.dist * (b + ds.dist * c))
         return ds, irradiance & active
 
     def eval_direction(self, it, ds, active=True):

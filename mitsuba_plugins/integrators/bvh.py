@@ -12,6 +12,7 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
+from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.integrators.columns import column
 from mitsuba_plugins.integrators.contacts import LightContacts
 from mitsuba_plugins.integrators.exact import (
@@ -69,7 +70,7 @@ class BvhSurfaces(ExactSurfaces):
         scaled = ray.o * self._scale
         origin = mi.Vector3f(scaled)
         remainder = mi.Vector3f(scaled - self._types.Point3(origin))
-        slope = 1 / mi.Vector3f(ray.d)  # dr.rcp is an approximation of fewer digits
+        slope = quotient(1, mi.Vector3f(ray.d))
         start = _octant(ray.d) * self._node_count
         node = mi.UInt32(start)
         end = start + self._node_count

@@ -6,6 +6,7 @@ from typing import Any
 import drjit as dr
 import mitsuba as mi
 
+from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.integrators.columns import column
 from mitsuba_plugins.integrators.contacts import LightContacts
 from mitsuba_plugins.integrators.geometry import Surface
@@ -43,7 +44,7 @@ class Records:
         sphere, v, w = surface
         arm = self._types.Vector3(p) - v
         length = dr.norm(arm)
-        n = dr.select(sphere, dr.select(length == 0, along, arm / length), v)
+        n = dr.select(sphere, dr.select(length == 0, along, arm * quotient(1, length)), v)
         on_sphere = self._types.Point3(v) + n * w
         on_plane = p - n * (dr.dot(n, p) + w)
         return self._types.Point3(dr.select(sphere, on_sphere, on_plane)), self._types.Vector3(n)
@@ -100,7 +101,7 @@ def sphere_distance(center: Any, radius: Any, ray: Ray, own: Any) -> Any:
     discriminant = radius * radius - dr.squared_norm(f + b * ray.d)
     root = dr.sqrt(discriminant)  # NaN where the ray misses: no comparison with it holds
     q = b + dr.copysign(root, b)
-    other = (dr.squared_norm(f) - radius * radius) / q
+    other = quotient(dr.squared_norm(f) - radius * radius, q)
     near, far = dr.minimum(q, other), dr.maximum(q, other)
     t_other = dr.select(near > ray.t_min, near, dr.select(far > ray.t_min, far, dr.inf))
     # A ray that starts on this sphere leaves it for good, or crosses it to the far root.
@@ -140,7 +141,7 @@ def narrow(passage: Passage, ray: Ray, n: Any, offset: Any, record: Any) -> Pass
     """
     cosine = dr.dot(n, ray.d)
     height = dr.dot(n, ray.o) + offset
-    t = -height / cosine
+    t = -quotient(height, cosine)
     other = ray.record != record
     enters = (cosine < 0) & (t > passage.enter) & other
     leaves = (cosine > 0) & (t < passage.leave) & other

@@ -10,6 +10,7 @@ from typing import Any
 import drjit as dr
 import mitsuba as mi
 
+from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.integrators.exact import Records
 from mitsuba_plugins.integrators.geometry import Surface
 from mitsuba_plugins.integrators.primitives import Primitives
@@ -45,7 +46,7 @@ class MitsubaSurfaces:
         to_target = hit.p + d * distance - origin
         length = dr.norm(to_target)
         # Short of the target, as Mitsuba's own shadow rays end.
-        probe = mi.Ray3f(origin, to_target / length, length * (1 - mi.math.ShadowEpsilon), 0.0, [])
+        probe = mi.Ray3f(origin, quotient(to_target, length), length * (1 - mi.math.ShadowEpsilon), 0.0, [])
         found = self._scene.ray_intersect_preliminary(probe, coherent=False, active=active)
         blocked = active & found.is_valid()
         return dr.select(blocked, self._primitives.find(found, blocked)[0], NOTHING)
@@ -66,4 +67,4 @@ def _ulp_offset(hit: Hit, d: Any) -> Any:
 def _ulps_off(p: Any, n: Any) -> Any:
     ulps = mi.Int32(n * 256)
     moved = dr.reinterpret_array(mi.Float, dr.reinterpret_array(mi.Int32, p) + dr.select(p < 0, -ulps, ulps))
-    return dr.select(dr.abs(p) < 1 / 32, p + n / 65536, moved)
+    return dr.select(dr.abs(p) < 2.0**-5, p + n * 2.0**-16, moved)

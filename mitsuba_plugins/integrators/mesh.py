@@ -13,6 +13,7 @@ from typing import Any
 import drjit as dr
 import mitsuba as mi
 
+from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.integrators.columns import column
 from mitsuba_plugins.integrators.contacts import LightContacts
 from mitsuba_plugins.integrators.exact import ExactSurfaces, Records, sphere_distance
@@ -84,7 +85,7 @@ class MeshSurfaces(ExactSurfaces):
         """Distance to one sphere or one plane of object `index`; infinite or NaN where the rules of `rays` bar it."""
         sphere, v, w = self.records.surface(index, record, active)
         own = ray.object == index
-        t_plane = -(dr.dot(v, ray.o) + w) / dr.dot(v, ray.d)
+        t_plane = -quotient(dr.dot(v, ray.o) + w, dr.dot(v, ray.d))
         t_own = dr.select(ray.inside & (ray.record != record), dr.maximum(t_plane, 0), dr.inf)
         t_plane = dr.select(own, t_own, dr.select(t_plane > ray.t_min, t_plane, dr.inf))
         return dr.select(sphere, sphere_distance(self._types.Point3(v), w, ray, own), t_plane)

@@ -14,6 +14,8 @@ from typing import Any
 import drjit as dr
 import mitsuba as mi
 
+from mitsuba_plugins.arithmetic import quotient
+
 NOTHING = 0xFFFFFFFF
 """Object index of a ray that starts on no surface, and of a hit that is none."""
 
@@ -65,7 +67,7 @@ class Hit:
 
 def ray_reach(ray: Ray) -> Any:
     """The largest coordinate or distance that went into the origin of a ray, 0 for a primary one."""
-    return ray.t_min / (ERROR_BOUND * dr.epsilon(ray.t_min))
+    return quotient(ray.t_min, ERROR_BOUND * dr.epsilon(ray.t_min))
 
 
 def start_ray(types: Real, o: Any, d: Any) -> Ray:
@@ -103,8 +105,8 @@ def largest(p: Any) -> Any:
 
 
 def unit(v: Any) -> Any:
-    """`v` over its length; dr.normalize multiplies by a reciprocal root instead and loses a digit."""
-    return v / dr.norm(v)
+    """`v` times the reciprocal of its length, as in the native tracer; dr.normalize's reciprocal root loses a digit."""
+    return v * quotient(1, dr.norm(v))
 
 
 def reflect(d: Any, n: Any) -> Any:
@@ -123,7 +125,7 @@ def refract(d: Any, n: Any, eta: Any) -> tuple[Any, Any]:
     through = d * eta + n * (eta * cosine - dr.sqrt(dr.maximum(cosine2, 0)))
     length = dr.norm(through)
     total = ~((cosine2 >= 0) & (length > 0))  # of a ratio beyond all measure these may be no numbers, or 0
-    return dr.select(total, reflect(d, n), through / length), total
+    return dr.select(total, reflect(d, n), through * quotient(1, length)), total
 
 
 def power(base: Any, exponent: Any) -> Any:

@@ -1,7 +1,6 @@
 """Recursive ray tracing after Whitted, with the course's shading model, in double precision where it matters."""
 
 import math
-import time
 from contextlib import contextmanager
 from typing import Any
 
@@ -9,13 +8,16 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
+from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.integrators.analytic import AnalyticSurfaces
 from mitsuba_plugins.integrators.bvh import BvhSurfaces
+from mitsuba_plugins.integrators.columns import column
 from mitsuba_plugins.integrators.contacts import Contacts, EyeContact, LightContacts
 from mitsuba_plugins.integrators.exact import Records
 from mitsuba_plugins.integrators.geometry import parse_geometry
 from mitsuba_plugins.integrators.interactions import MitsubaSurfaces
 from mitsuba_plugins.integrators.mesh import MeshSurfaces
+from mitsuba_plugins.integrators.pace import Pace
 from mitsuba_plugins.integrators.rays import NOTHING, Hit, Ray, lanes, power, real, reflect, refract, start_ray, unit
 from mitsuba_plugins.integrators.stack import RayStack
 from mitsuba_plugins.integrators.tables import Finish, Illumination, Lights, Materials
@@ -24,16 +26,6 @@ INTERSECTIONS = ("analytic", "bvh", "mesh", "offset", "ulp")
 """Ways to find what a ray hits."""
 ANALYTIC_LIMIT = 32
 """Spheres and planes, together, up to which `intersections` "auto" is "analytic": its kernels grow with them."""
-
-FIRST_BAND, SMALLEST_BAND, LARGEST_BAND = 1 << 19, 1 << 16, 1 << 20
-"""Primary rays traced at once to begin with, at least, and at most: within these limits the size of a band is adapted
-..."""
-FIRST_BAND_BRANCHING = SMALLEST_BAND_BRANCHING = 1 << 10
-"""Likewise where rays branch, for a tree may have 2^17 of them."""
-BAND_SECONDS = 0.5
-"""... to this time ..."""
-BAND_GROWTH = 8
-"""... from one to the next by no more than this, since the top of a picture may be nothing but sky."""
 
 
 class Whitted(mi.SamplingIntegrator):
@@ -185,7 +177,7 @@ class Whitted(mi.SamplingIntegrator):
         position, emission, (a, b, c) = self._lights.get(index, active)
         to_light = position - hit.p
         distance = dr.norm(to_light)
-        to_light = to_light / distance
+        to_light = to_light * quotient(1, distance)
         n = dr.select(hit.inside, -hit.n, hit.n)
         cosine = dr.dot(n, to_light)
         facing = active & (cosine > 0) & ~self._light_contacts.grazes(index, hit.record, active)
@@ -193,7 +185,7 @@ class Whitted(mi.SamplingIntegrator):
         attenuation = a + distance * (b + distance * c)
         # Masked at the end: a light at the hit itself has no direction, and nothing times no number is no number.
         lit = facing & (blocker == NOTHING)
-        irradiance = emission / mi.Float(attenuation)
+        irradiance = quotient(emission, mi.Float(attenuation))
         diffuse = (irradiance * color * (finish.kd * mi.Float(cosine))) & lit
         specular = mi.Color3f(0)
         if self.highlights:
@@ -210,7 +202,7 @@ class Whitted(mi.SamplingIntegrator):
 
     def transmitted(self, ray: Ray, hit: Hit, eta) -> tuple[Ray, Any]:
         """The refracted ray, or the mirrored one past the critical angle, and whether it is past."""
-        eta = dr.select(hit.inside, 1 / eta, eta)
+        eta = dr.select(hit.inside, quotient(1, eta), eta)
         n = dr.select(hit.inside, -hit.n, hit.n)
         d, total = refract(ray.d, n, eta)
         return self._tracer.spawn(hit, d, hit.inside == total), total
@@ -305,47 +297,56 @@ class Whitted(mi.SamplingIntegrator):
             dr.eval(image)
         return image
 
-    def bands(self, scene, sensor, spp=0):
-        """Draw a picture in bands of rows, so that neither memory nor the time without a sign of life grow with its
-        size.
+    def bands(self, scene, sensor, spp=0, progress=None):
+        """Draw a picture in bands of rows, so that memory does not grow with its size, by launches that take some time
+        but not long, so that there are signs of life and no more launches than that.
 
         Yields:
             The first row of a finished band within the film's crop window, and its pixels' colours (Color3f), row by
-            row.
+            row. After every launch `progress`, if any, is called with the finished share of the picture.
 
         """
         offsets = self.sample_offsets(spp or sensor.sampler().sample_count())
-        with self.prepared(scene, sensor):
-            yield from self._bands(sensor, offsets)
+        with self.prepared(scene, sensor), dr.suspend_grad():
+            yield from self._bands(sensor, offsets, progress)
 
-    def _bands(self, sensor, offsets):
+    def _bands(self, sensor, offsets, progress):
         width, height = sensor.film().crop_size()
-        crop_offset = mi.Point2d(sensor.film().crop_offset())
-        rays, least = FIRST_BAND, SMALLEST_BAND
-        if self.branching:
-            rays, least = FIRST_BAND_BRANCHING, SMALLEST_BAND_BRANCHING
+        table = column(mi.Float64, offsets)
+        pace = Pace(self.branching)
         first = 0
         while first < height:
-            rows = min(height - first, max(1, rays // (width * len(offsets))))
-            started = time.perf_counter()
-            pixel = dr.arange(mi.UInt32, rows * width)
-            columns = dr.opaque(mi.UInt32, width)
-            row = pixel // columns
-            corner = mi.Point2d(pixel - row * columns, row + dr.opaque(mi.UInt32, first)) + crop_offset
-            color = mi.Color3f(0)
-            with dr.suspend_grad():
-                for x, y in offsets:
-                    # Opaque, so that all samples share one kernel.
-                    position = corner + mi.Point2d(dr.opaque(mi.Float64, x), dr.opaque(mi.Float64, y))
-                    color += self.trace(self.primary_ray(sensor, position), True)
+            rows = min(height - first, pace.rows(width))
+            color = dr.opaque(mi.Color3f, 0, rows * width)  # so that the first launch needs no kernel of its own
+            done = 0
+            while done < len(offsets):
+                count = min(len(offsets) - done, pace.samples(rows * width))
+                with pace.launch(rows * width * count):
+                    color = self._add_samples(sensor, color, first, table, done, done + count)
                     dr.eval(color)
-                color = color / len(offsets)
-                dr.eval(color)
-                dr.sync_thread()
-            yield first, color
+                    dr.sync_thread()
+                done += count
+                if progress is not None:
+                    progress((first + rows * done / len(offsets)) / height)
+            yield first, quotient(color, len(offsets))
             first += rows
-            share = BAND_SECONDS / max(time.perf_counter() - started, 1e-3)
-            rays = int(min(max(rays * min(share, BAND_GROWTH), least), LARGEST_BAND))
+
+    @dr.syntax
+    def _add_samples(self, sensor, color, first, offsets, sample, end):
+        """Colours of the pixels of whole rows from row `first` on, with those of some more samples added."""
+        width = dr.width(color)
+        corner = _corners(sensor.film(), first, width)
+        if dr.hint(dr.width(offsets) == 2, mode="scalar"):
+            # One sample needs no loop, which takes twice as long to record.
+            color += self.trace(self.primary_ray(sensor, corner + dr.gather(mi.Point2d, offsets, mi.UInt32(0))), True)
+        else:
+            # Opaque, so that all numbers of samples share one kernel.
+            sample, end = dr.opaque(mi.UInt32, sample, width), dr.opaque(mi.UInt32, end)
+            while sample < end:
+                position = corner + dr.gather(mi.Point2d, offsets, sample)
+                color += self.trace(self.primary_ray(sensor, position), True)
+                sample += 1
+        return color
 
     @staticmethod
     def sample_offsets(spp):
@@ -366,7 +367,7 @@ class Whitted(mi.SamplingIntegrator):
             ray = start_ray(self.types, *sensor.primary_ray(position))
             return ray if self._eye_contact is None else self._eye_contact.start(ray)
         size, offset = sensor.film().crop_size(), sensor.film().crop_offset()
-        sample = mi.Point2f((position - mi.Point2d(offset)) / mi.Point2d(size))
+        sample = mi.Point2f(quotient(position - mi.Point2d(offset), mi.Point2d(size)))
         ray, _ = sensor.sample_ray(0.0, 0.5, sample, mi.Point2f(0.5))
         return start_ray(self.types, ray.o, unit(mi.Vector3d(ray.d)))
 
@@ -407,6 +408,15 @@ def _materials(props, surfaces):
         if not hasattr(bsdfs[name], "COEFFICIENTS"):
             raise ValueError(f"whitted: every material is a 'phong' BSDF, '{name}' is a {type(bsdfs[name]).__name__}")
     return bsdfs
+
+
+def _corners(film, first, count):
+    """Top left corners (Point2d) of `count` pixels from row `first` of the film's crop window on."""
+    # Opaque, so that pictures of all sizes share one kernel.
+    first, columns = dr.opaque(mi.UInt32, first), dr.opaque(mi.UInt32, film.crop_size().x)
+    pixel = dr.arange(mi.UInt32, count)
+    row = pixel // columns
+    return mi.Point2d(pixel - row * columns, row + first) + mi.Point2d(film.crop_offset())
 
 
 def _block(bands, film):

@@ -3,6 +3,9 @@
 import drjit as dr
 import mitsuba as mi
 
+from mitsuba_plugins.arithmetic import quotient
+from mitsuba_plugins.integrators.rays import unit
+
 
 class Pinhole(mi.Sensor):
     r"""Pinhole camera in double precision (``pinhole``).
@@ -52,13 +55,13 @@ class Pinhole(mi.Sensor):
         """
         # Opaque, so that pictures of all sizes share one kernel.
         width, height = (dr.opaque(mi.Float64, size) for size in self.film().size())
-        forward = _unit(_in_range(_direction(self.eye, self.look_at)))
-        right = _unit(_in_range(dr.cross(forward, _in_range(self.up))))
+        forward = unit(_in_range(_direction(self.eye, self.look_at)))
+        right = unit(_in_range(dr.cross(forward, _in_range(self.up))))
         upward = dr.cross(right, forward)
         half_height = dr.tan(dr.deg2rad(self.fovy) * 0.5)
-        x = (2 * (position.x + self.pixel_offset) / width - 1) * half_height * (width / height)
-        y = (1 - 2 * (position.y + self.pixel_offset) / height) * half_height
-        return self.eye, _unit(forward + x * right + y * upward)
+        x = (quotient(2 * (position.x + self.pixel_offset), width) - 1) * half_height * quotient(width, height)
+        y = (1 - quotient(2 * (position.y + self.pixel_offset), height)) * half_height
+        return self.eye, unit(forward + x * right + y * upward)
 
     def sample_ray(self, time, wavelength_sample, position_sample, aperture_sample, active=True):
         film = self.film()
@@ -87,18 +90,13 @@ class Pinhole(mi.Sensor):
 def _direction(start, end):
     """Along the difference of two points: half of it where no number holds it."""
     whole = end - start
-    return dr.select(dr.all(dr.isfinite(whole)), whole, end / 2 - start / 2)
+    return dr.select(dr.all(dr.isfinite(whole)), whole, end * 0.5 - start * 0.5)
 
 
 def _in_range(v):
     """`v`, made shorter or longer where the square of its length would overflow or vanish."""
     largest = dr.max(dr.abs(v))
-    return dr.select((largest > 1e-100) & (largest < 1e100), v, v / largest)
-
-
-def _unit(v):
-    # dr.normalize multiplies by a reciprocal root, which loses a digit.
-    return v / dr.norm(v)
+    return dr.select((largest > 1e-100) & (largest < 1e100), v, quotient(v, largest))
 
 
 mi.register_sensor("pinhole", Pinhole)

@@ -3,6 +3,8 @@
 import drjit as dr
 import mitsuba as mi
 
+from mitsuba_plugins.arithmetic import quotient
+
 
 class ProjectedBitmap(mi.Texture):
     r"""Projected bitmap texture (``projected_bitmap``).
@@ -29,25 +31,30 @@ class ProjectedBitmap(mi.Texture):
     def __init__(self, props):
         mi.Texture.__init__(self, props)
         image = props["data"] if "data" in props else _read(props["filename"])
-        self.height, self.width = image.shape[0], image.shape[1]
+        # Opaque, so that images of all sizes share one kernel.
+        self.height, self.width = mi.Float64(image.shape[0]), mi.Float64(image.shape[1])
         self.texels = mi.Float(image.array)
         self.to_s = _row(props["to_s"])
         self.to_r = _row(props["to_r"])
-        dr.make_opaque(self.texels, self.to_s, self.to_r)
+        dr.make_opaque(self.texels, self.to_s, self.to_r, self.height, self.width)
 
     def color_at(self, p):
         """Colour at a position of either precision, Point3d for exact texel boundaries."""
         p = mi.Point3d(p)
         column = self._texel(self.to_s, p, self.width)
         row = self._texel(self.to_r, p, self.height)
-        return dr.gather(mi.Color3f, self.texels, row * self.width + column)
+        return dr.gather(mi.Color3f, self.texels, row * mi.UInt32(self.width) + column)
+
+    @classmethod
+    def _texel(cls, projection, p, count):
+        a, b, c, d = projection
+        return cls._wrap(dr.trunc((a * p.x + b * p.y + c * p.z + d) * count), count)
 
     @staticmethod
-    def _texel(projection, p, count):
-        a, b, c, d = projection
-        position = dr.trunc((a * p.x + b * p.y + c * p.z + d) * count)
+    def _wrap(position, count):
+        """The texel at a whole number, of `count` that repeat."""
         # The remainder is taken in floating point: far from the origin the position would overflow an integer.
-        remainder = position - dr.floor(position / count) * count
+        remainder = position - dr.floor(quotient(position, count)) * count
         # A NaN or a rounded remainder must not read outside the image.
         return mi.UInt32(dr.fmin(dr.fmax(remainder, 0), count - 1))
 
@@ -67,7 +74,7 @@ class ProjectedBitmap(mi.Texture):
         callback.put("texels", self.texels, mi.ParamFlags.Differentiable)
 
     def to_string(self):
-        return f"ProjectedBitmap[{self.width} x {self.height}, to_s={self.to_s}, to_r={self.to_r}]"
+        return f"ProjectedBitmap[{self.width[0]:.0f} x {self.height[0]:.0f}, to_s={self.to_s}, to_r={self.to_r}]"
 
 
 def _read(filename):

@@ -3,6 +3,8 @@
 import drjit as dr
 import mitsuba as mi
 
+from mitsuba_plugins.arithmetic import quotient
+
 
 class SolidChecker(mi.Texture):
     r"""Solid checkerboard texture (``solid_checker``).
@@ -34,7 +36,7 @@ class SolidChecker(mi.Texture):
 
     def color_at(self, p):
         """Colour at a position of either precision: Point3d for exact boundaries between cubes."""
-        cell = dr.floor(mi.Point3d(p) / self.size)
+        cell = dr.floor(quotient(mi.Point3d(p), self.size))
         # The parity of a sum is found without the sum: far from the origin it would overflow an integer.
         half = (cell.x + cell.y + cell.z) * 0.5
         return dr.select(half == dr.floor(half), self.first, self.second)

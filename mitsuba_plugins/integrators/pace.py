@@ -1,0 +1,53 @@
+"""How much of a picture is drawn by one launch of the kernel.
+
+A launch has a fixed cost, some hundredths of a second in which Python records the kernel, and cannot be stopped. So it
+should take a good part of a second, and how many rays that are is found out while a picture is drawn.
+"""
+
+import time
+from collections.abc import Iterator
+from contextlib import contextmanager
+
+import drjit as dr
+import mitsuba as mi
+
+SECONDS = 0.5
+"""What a launch should take."""
+GROWTH = 8
+"""A launch has no more rays than this times the one before, for the top of a picture may be nothing but sky."""
+LEAST = 1 << 16
+"""Primary rays of a launch, however long they take. Fewer take hardly less time, ..."""
+LEAST_BRANCHING = 1 << 10
+"""... but where rays branch, for a tree may have 2^17 of them."""
+FIRST = {False: 1 << 19, True: 1 << 22}
+"""Primary rays of the first launch, on a CPU and on a GPU; where rays branch it has the least."""
+MOST_PIXELS = {False: 1 << 20, True: 1 << 25}
+"""Of a band, likewise: memory grows with them and not with the number of samples."""
+MOST = 1 << 28
+"""Primary rays of a launch."""
+
+
+class Pace:
+    """Sizes of bands and launches that follow how fast the picture is drawn."""
+
+    def __init__(self, branching: bool) -> None:
+        on_gpu = dr.backend_v(mi.Float) == dr.JitBackend.CUDA
+        self._least = LEAST_BRANCHING if branching else LEAST
+        self._rays = LEAST_BRANCHING if branching else FIRST[on_gpu]
+        self._most_pixels = MOST_PIXELS[on_gpu]
+
+    def rows(self, width: int) -> int:
+        """Rows of the next band, of a picture of that width. They do not depend on the number of samples."""
+        return max(1, min(self._rays, self._most_pixels) // width)
+
+    def samples(self, pixels: int) -> int:
+        """Samples of each pixel that the next launch draws."""
+        return max(1, self._rays // pixels)
+
+    @contextmanager
+    def launch(self, rays: int) -> Iterator[None]:
+        """Measure a launch of so many primary rays."""
+        started = time.perf_counter()
+        yield
+        fitting = rays * SECONDS / max(time.perf_counter() - started, 1e-3)
+        self._rays = int(min(max(min(fitting, self._rays * GROWTH), self._least), MOST))
