@@ -85,13 +85,13 @@ def _findings() -> tuple[list[tuple[str, str]], list[str], bool]:
         instead = f" Use --variant {working[0]} until it does." if working else ""
         advice.append(f"Mitsuba runs in {default} by default, which does not work here.{instead}")
     if library is None or blames_llvm:
-        advice.append(_llvm_advice(MINIMUM_LLVM))
+        advice.append(_llvm_advice(MINIMUM_LLVM, library is not None and library.by_user))
     rows.append(("kernel cache", _kernel_cache()))
     return rows, advice, native.works and default in working
 
 
-def _llvm_advice(least: int) -> str:
-    if os.environ.get("DRJIT_LIBLLVM_PATH"):
+def _llvm_advice(least: int, by_user: bool) -> str:
+    if by_user:
         return "DRJIT_LIBLLVM_PATH names the LLVM library that is used: unset it, or name another."
     return (
         f"llvm_ad_rgb needs an LLVM library of version {least} or newer. On x86-64 Linux: pip install "
