@@ -6,6 +6,8 @@ from collections.abc import Iterable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
 
+from converter.descriptors import check_descriptor, named_descriptor
+
 
 def check_apart(target: Path, sources: Iterable[Path]) -> None:
     """See that a result takes the place of nothing that it is made from.
@@ -27,6 +29,9 @@ def check_target(path: Path, sources: Iterable[Path] = ()) -> None:
 
     """
     check_apart(path, sources)
+    if is_special(path):
+        check_special(path)
+        return
     if path.is_dir():
         raise IsADirectoryError(errno.EISDIR, os.strerror(errno.EISDIR), str(path))
     if not path.parent.is_dir():
@@ -41,8 +46,27 @@ def shown_name(name: str | Path) -> str:
 
 
 def is_special(path: Path) -> bool:
-    """Whether there is something that is no file, such as a pipe or /dev/null, and must not be replaced by one."""
-    return path.exists() and not path.is_file()
+    """Whether results are copied into what is there, for it is no file that may be replaced.
+
+    Such are a pipe, /dev/null, and whatever a descriptor has open, be it a file.
+    """
+    if named_descriptor(path) is not None:
+        return True
+    return path.exists() and not path.is_file() and not path.is_dir()
+
+
+def check_special(path: Path) -> None:
+    """See that something special can be written into, without opening it: a pipe's end would wait for the other.
+
+    Raises:
+        OSError: it is a descriptor that is not open, or open for reading only, or is write-protected.
+
+    """
+    descriptor = named_descriptor(path)
+    if descriptor is not None:
+        check_descriptor(descriptor, path)
+    elif not os.access(path, os.W_OK):
+        raise PermissionError(errno.EACCES, os.strerror(errno.EACCES), str(path))
 
 
 def temporary_name(target: Path, ending: str) -> Path:
@@ -54,22 +78,19 @@ def temporary_name(target: Path, ending: str) -> Path:
 def replacing(path: Path, ending: str | None = None) -> Iterator[Path]:
     """A new file to write into, which takes the place of `path` when the block ends well, and goes when not.
 
-    Its ending is the given one, or that of `path`. A link stays, and what it points to is replaced. Into what is no
-    file the new one is copied.
+    Its ending is the given one, or that of `path`. A link stays, and what it points to is replaced. Into what is
+    special the new one is copied.
     """
-    target = path.resolve()
     ending = path.suffix if ending is None else ending
-    if is_special(target):
+    if is_special(path):
         from tempfile import TemporaryDirectory
 
         with TemporaryDirectory() as folder:
             temporary = Path(folder) / f"file{ending}"
             yield temporary
-            try:
-                target.write_bytes(temporary.read_bytes())
-            except OSError as error:  # writing, unlike opening, does not say what
-                raise OSError(error.errno, error.strerror, str(path)) from error
+            _copy(temporary, path)
         return
+    target = path.resolve()
     temporary = temporary_name(target, ending)
     try:
         yield temporary
@@ -77,3 +98,13 @@ def replacing(path: Path, ending: str | None = None) -> Iterator[Path]:
     finally:
         with suppress(OSError):  # it was never made, or is in its place
             temporary.unlink()
+
+
+def _copy(file: Path, special: Path) -> None:
+    """Write what is in a file into something special, a descriptor from where it stands."""
+    descriptor = named_descriptor(special)
+    try:
+        with special.open("wb") if descriptor is None else os.fdopen(os.dup(descriptor), "wb") as opened:
+            opened.write(file.read_bytes())
+    except OSError as error:  # writing, unlike opening, does not say what
+        raise OSError(error.errno, error.strerror, str(special)) from error

@@ -5,12 +5,14 @@
 
     mitsuba_plugins.set_variant("auto")
     image = mitsuba.render(mitsuba.load_file("scene.xml"))
+    mitsuba_plugins.write_image("picture.png", image)
 
 Importing this package is cheap and loads neither Mitsuba nor LLVM; `set_variant` and `register` do.
 """
 
 from mitsuba_plugins.backend import BackendError, name_llvm, register, set_variant
+from mitsuba_plugins.picture import write_image
 
 name_llvm()
 
-__all__ = ["BackendError", "register", "set_variant"]
+__all__ = ["BackendError", "register", "set_variant", "write_image"]

@@ -27,6 +27,27 @@ PLUGINS = (
 MINIMUM_LLVM = 19
 """Dr.Jit 1.5 calls LLVM 14 and older missing, and aborts the process in code generation with 15 and 16."""
 
+_FOLDERS = ("/usr/lib", "/usr/lib64", "/usr/local/lib", "/usr/local/opt", "/opt/homebrew/opt", "/opt/local/libexec")
+"""Linux's, and what Homebrew (on Intel and on Apple's own processors) and MacPorts use."""
+_PATTERNS = ("libLLVM*.so*", "*-linux-gnu/libLLVM*.so*", "llvm*/lib/libLLVM*.so*", "llvm*/lib/libLLVM*.dylib")
+
+_ASK_VERSION = """
+import ctypes, sys
+try:
+    library = ctypes.CDLL(sys.argv[1])
+except OSError as error:
+    sys.exit(f"it cannot be loaded ({str(error).removeprefix(sys.argv[1] + ': ')})")
+if not hasattr(library, "LLVMContextCreate"):
+    sys.exit("it is no LLVM library")
+if not hasattr(library, "LLVMGetVersion"):  # which came with 16
+    sys.exit("it is older than LLVM 16")
+numbers = [ctypes.c_uint() for _ in range(3)]
+library.LLVMGetVersion(*map(ctypes.byref, numbers))
+print(numbers[0].value)
+"""
+_PATIENCE = 60  # seconds; loading takes a tenth
+
+_BY_USER = "DRJIT_LIBLLVM_PATH is set"
 _registered: set[str] = set()
 _named: "LlvmLibrary | None" = None
 
@@ -42,6 +63,11 @@ class LlvmLibrary:
     path: Path
     reason: str
 
+    @property
+    def by_user(self) -> bool:
+        """Whether DRJIT_LIBLLVM_PATH names it."""
+        return self.reason == _BY_USER
+
 
 def find_llvm() -> LlvmLibrary | None:
     """Choose the LLVM library for Dr.Jit: DRJIT_LIBLLVM_PATH, else the wheel's, else the newest of the system's."""
@@ -49,10 +75,10 @@ def find_llvm() -> LlvmLibrary | None:
     if _named is not None and chosen == str(_named.path):
         return _named
     if chosen:
-        return LlvmLibrary(Path(chosen), "DRJIT_LIBLLVM_PATH is set")
-    wheel = sorted(Path(sys.prefix, "lib").glob("libLLVM.so.*"), key=_llvm_version)
-    if wheel and _llvm_version(wheel[-1]) >= MINIMUM_LLVM:
-        return LlvmLibrary(wheel[-1], "the karellen-llvm-core package of this Python environment")
+        return LlvmLibrary(Path(chosen), _BY_USER)
+    wheel = _wheel_llvm()
+    if wheel is not None:
+        return LlvmLibrary(wheel, "the karellen-llvm-core package of this Python environment")
     system = max(_system_llvm(), key=_llvm_version, default=None)
     if system is not None and _llvm_version(system) >= MINIMUM_LLVM:
         return LlvmLibrary(system, f"newest LLVM of the system, at least version {MINIMUM_LLVM}")
@@ -69,15 +95,58 @@ def name_llvm() -> None:
 
 
 def _llvm_version(library: Path) -> int:
-    """Major version in a library's file name: libLLVM.so.23.1, libLLVM-19.so, libLLVM-19.so.1; 0 if it names none."""
-    match = re.search(r"libLLVM(?:-(\d+)|\.so\.(\d+))", library.name)
-    return int(match[1] or match[2]) if match else 0
+    """Major version in a library's file name: libLLVM.so.23.1, libLLVM-19.so, libLLVM-19.so.1; 0 if it names none.
+
+    macOS has it in a folder's name, that of the file itself or of one that is linked to it: llvm@19/lib/libLLVM.dylib,
+    Cellar/llvm/21.1.0/lib/libLLVM.dylib.
+    """
+    match = re.search(r"libLLVM[-.](?:so\.)?(\d+)", library.name)
+    if match is None and library.name == "libLLVM.dylib":
+        paths = map(str, (library, library.resolve()))
+        match = next(filter(None, (re.search(r"/llvm[-@/](\d+)", path) for path in paths)), None)
+    return int(match[1]) if match else 0
+
+
+def _wheel_llvm() -> Path | None:
+    """The LLVM library of this Python environment, if it is new enough."""
+    wheel = max(Path(sys.prefix, "lib").glob("libLLVM.so.*"), key=_llvm_version, default=None)
+    return wheel if wheel is not None and _llvm_version(wheel) >= MINIMUM_LLVM else None
 
 
 def _system_llvm() -> Iterator[Path]:
-    for folder in ("/usr/lib", "/usr/lib64", "/usr/local/lib", "/opt/homebrew/opt/llvm/lib"):
-        for pattern in ("libLLVM*.so*", "*-linux-gnu/libLLVM*.so*", "llvm-*/lib/libLLVM*.so*"):
+    for folder in _FOLDERS:
+        for pattern in _PATTERNS:
             yield from Path(folder).glob(pattern)
+
+
+def llvm_complaint() -> str | None:
+    """What is wrong with the library that DRJIT_LIBLLVM_PATH names; None where nothing is, or it names none."""
+    library = find_llvm()
+    if library is None or not library.by_user or library.path == _wheel_llvm():
+        return None
+    return _complaint_about(library.path)
+
+
+@functools.cache
+def _complaint_about(library: Path) -> str | None:
+    """What is wrong with an LLVM library; None where nothing is.
+
+    A process of its own asks it: a library that does not fit can end the process that loads it.
+    """
+    import signal
+    import subprocess
+
+    command = [sys.executable, "-I", "-S", "-c", _ASK_VERSION, str(library)]
+    try:
+        child = subprocess.run(command, capture_output=True, text=True, errors="replace", timeout=_PATIENCE)
+    except (OSError, subprocess.TimeoutExpired) as error:
+        return f"it cannot be tried: {error}"
+    if child.returncode < 0:
+        return f"a process that loads it dies of {signal.Signals(-child.returncode).name}"
+    if child.returncode != 0:
+        return (child.stderr.strip().splitlines() or ["it cannot be loaded"])[-1]
+    version = int(child.stdout)
+    return None if version >= MINIMUM_LLVM else f"it is LLVM {version}"
 
 
 def set_variant(variant: str = "auto") -> str:
@@ -175,6 +244,11 @@ def _prepare_llvm() -> None:
             f"Mitsuba's llvm_ad_rgb needs an LLVM library of version {MINIMUM_LLVM} or newer, and none was found. "
             "On x86-64 Linux: pip install karellen-llvm-core. Elsewhere install your system's LLVM "
             "(Debian: apt install llvm-19; macOS: brew install llvm), or set DRJIT_LIBLLVM_PATH to its library."
+        )
+    if complaint := llvm_complaint():
+        raise BackendError(
+            f"DRJIT_LIBLLVM_PATH names {library.path}: {complaint}. Unset it, or let it name an LLVM library of "
+            f"version {MINIMUM_LLVM} or newer."
         )
     try:
         ctypes.CDLL(str(library.path))

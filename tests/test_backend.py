@@ -4,11 +4,13 @@ import signal
 import subprocess
 import sys
 from pathlib import Path
+from shutil import which
 
 import numpy as np
 import pytest
 
 import mitsuba_plugins
+from converter.renderers.methods import METHODS
 from mitsuba_plugins import backend, trial
 
 
@@ -30,10 +32,34 @@ def environment(monkeypatch, tmp_path):
         ("libLLVM-19.so", 19),
         ("libLLVM-14.so.1", 14),
         ("libLLVM.so", 0),
+        ("libLLVM-21.dylib", 21),
+        ("llvm@19/lib/libLLVM.dylib", 19),
+        ("llvm-20/lib/libLLVM.dylib", 20),
+        ("Cellar/llvm/21.1.0/lib/libLLVM.dylib", 21),
+        ("llvm@19/lib/libLLVM-C.dylib", 0),
     ],
 )
 def test_version_of_a_library(name, version):
     assert backend._llvm_version(Path("/usr/lib") / name) == version
+
+
+@pytest.mark.parametrize("prefix", ["/opt/homebrew/opt", "/usr/local/opt"])
+def test_homebrew_is_looked_into(monkeypatch, tmp_path, prefix):
+    """As it has them: opt/llvm is a link to a folder that is named by the version."""
+    assert prefix in backend._FOLDERS
+    monkeypatch.delenv("DRJIT_LIBLLVM_PATH", raising=False)
+    monkeypatch.setattr(backend.sys, "prefix", str(tmp_path))
+    monkeypatch.setattr(backend, "_FOLDERS", (str(tmp_path / "opt"),))
+    assert backend.find_llvm() is None
+    for name in ("llvm", "llvm@19", "llvm@14"):
+        version = {"llvm": "21.1.0"}.get(name, f"{name[5:]}.1.7")
+        cellar = tmp_path / "Cellar" / name / version / "lib"
+        cellar.mkdir(parents=True)
+        (cellar / "libLLVM.dylib").touch()
+        (cellar / "libLLVM-C.dylib").touch()
+        (tmp_path / "opt").mkdir(exist_ok=True)
+        (tmp_path / "opt" / name).symlink_to(cellar.parent)
+    assert backend.find_llvm().path == tmp_path / "opt" / "llvm" / "lib" / "libLLVM.dylib"
 
 
 def test_users_choice_comes_first(environment, monkeypatch):
@@ -71,8 +97,104 @@ def test_library_that_cannot_be_loaded(environment, monkeypatch):
     broken = folder / "libLLVM-20.so"
     broken.write_text("no library")
     monkeypatch.setenv("DRJIT_LIBLLVM_PATH", str(broken))
-    with pytest.raises(mitsuba_plugins.BackendError, match="DRJIT_LIBLLVM_PATH is set"):
+    with pytest.raises(mitsuba_plugins.BackendError, match=r"DRJIT_LIBLLVM_PATH names .*: it cannot be loaded"):
         backend._prepare_llvm.__wrapped__()
+
+
+# ---- What DRJIT_LIBLLVM_PATH names
+
+
+@pytest.fixture
+def named(tmp_path, monkeypatch):
+    """Compiles a library from C, and has DRJIT_LIBLLVM_PATH name it; returns what is wrong with it."""
+    compiler = which("cc") or which("gcc") or which("clang")
+    if compiler is None:
+        pytest.skip("there is no C compiler")
+
+    def run(source, name="libLLVM.so"):
+        library = tmp_path / name
+        subprocess.run(
+            [compiler, "-shared", "-fPIC", "-x", "c", "-", "-o", library], input=source, text=True, check=True
+        )
+        monkeypatch.setenv("DRJIT_LIBLLVM_PATH", str(library))
+        return backend.llvm_complaint()
+
+    return run
+
+
+LLVM = "void LLVMContextCreate() {{}}"
+VERSION = LLVM + " void LLVMGetVersion(unsigned *a, unsigned *b, unsigned *c) {{ *a = {}; *b = 1; *c = 0; }}"
+
+
+@pytest.mark.parametrize(
+    ("source", "complaint"),
+    [
+        ("int nothing;", "it is no LLVM library"),
+        (LLVM.format(), "it is older than LLVM 16"),
+        (VERSION.format(18), "it is LLVM 18"),
+        (VERSION.format(19), None),
+        (VERSION.format(23), None),
+        (
+            "#include <stdlib.h>\n__attribute__((constructor)) void start() { abort(); }",
+            "a process that loads it dies of SIGABRT",
+        ),
+    ],
+)
+def test_the_library_is_asked(named, source, complaint):
+    """In a process of its own, so that the last one ends no other."""
+    assert named(source) == complaint
+
+
+def test_the_users_library_that_is_too_old(named):
+    named(VERSION.format(14), "libLLVM-30.so")
+    with pytest.raises(mitsuba_plugins.BackendError) as told:
+        backend._prepare_llvm.__wrapped__()
+    assert "libLLVM-30.so: it is LLVM 14. Unset it, or let it name an LLVM library of version 19" in str(told.value)
+
+
+@pytest.mark.parametrize("name", ["missing.so", "", "text"])
+def test_the_users_library_is_none(tmp_path, monkeypatch, name):
+    (tmp_path / "text").write_text("no library")
+    monkeypatch.setenv("DRJIT_LIBLLVM_PATH", str(tmp_path / name))
+    assert backend.llvm_complaint().startswith("it cannot be loaded (")
+    assert str(tmp_path) not in backend.llvm_complaint()
+
+
+def test_our_own_library_is_not_asked(environment, monkeypatch):
+    """Nor in child processes, which find it named in the environment: they would start later by a tenth of a second."""
+    folder, _ = environment
+    (folder / "venv" / "lib" / "libLLVM.so.23.1").write_text("no library")
+    monkeypatch.setenv("DRJIT_LIBLLVM_PATH", str(folder / "venv" / "lib" / "libLLVM.so.23.1"))
+    assert backend.llvm_complaint() is None
+
+
+@pytest.mark.parametrize(
+    ("words", "instead"),
+    [
+        (["render", "SCENE", "a.ppm", "8", "6", "-q"], "native"),
+        (["pixel", "SCENE", "1", "1", "8", "6", "-q"], "native"),
+        (["compare", "SCENE", "8", "6", "-q"], "native-long-double"),
+    ],
+)
+def test_without_mitsuba_commands_name_a_method_that_works(tmp_path, monkeypatch, words, instead):
+    scene = str(Path(__file__).parents[1] / "scenes" / "figure1.in")
+    words = [scene if word == "SCENE" else word for word in words]
+    monkeypatch.setenv("DRJIT_LIBLLVM_PATH", "/nowhere/libLLVM.so")
+    monkeypatch.setenv("CUDA_VISIBLE_DEVICES", "")
+    program = [sys.executable, "-m", "converter.commands.main", *words]
+    for options, status in ((["--variant", "llvm_ad_rgb"], 3), (["--method", instead], 0)):
+        child = subprocess.run([*program, *options], capture_output=True, text=True, cwd=tmp_path)
+        assert child.returncode == status, child.stderr
+        assert child.stderr.endswith(f"\n--method {instead} draws without Mitsuba\n") == (status == 3)
+
+
+def test_methods_that_the_users_library_rules_out_are_marked(monkeypatch):
+    monkeypatch.setenv("DRJIT_LIBLLVM_PATH", "/nowhere/libLLVM.so")
+    monkeypatch.setattr(backend, "has_cuda", lambda: False)
+    assert "DRJIT_LIBLLVM_PATH names no library that will do: it cannot be loaded" in METHODS["mitsuba"].missing()
+
+
+# ---- Variants
 
 
 def test_unknown_variant():

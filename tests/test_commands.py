@@ -759,7 +759,10 @@ def test_compare_both_renderers(whitted, scene, tmp_path, mi):
 def test_compare_other_methods(whitted, scene):
     status, out, _ = whitted("compare", scene, 40, 30, "--method", "native-depth-1", "--reference", "native-cutoff-0")
     assert status == 1
-    assert out.splitlines()[0] == "native-depth-1 against native-cutoff-0, 40 x 30 pixels"
+    assert out.splitlines()[:2] == [
+        "reference: native-cutoff-0, which is trusted",
+        "candidate: native-depth-1, 40 x 30 pixels",
+    ]
 
 
 @pytest.fixture
@@ -774,7 +777,10 @@ def images(tmp_path):
 def test_compare_images_that_agree(whitted, images):
     status, out, err = whitted("compare", images / "a.exr", images / "b.ppm")
     assert (status, err) == (0, f"note: {images}/b.ppm holds no colours beyond 0..1: both are clamped\n")
-    assert out.splitlines()[0] == f"{images}/b.ppm against {images}/a.exr, 8 x 6 pixels"
+    assert out.splitlines()[:2] == [
+        f"reference: {images}/a.exr, which is trusted",
+        f"candidate: {images}/b.ppm, 8 x 6 pixels",
+    ]
     assert "seconds" not in out
 
 
@@ -802,7 +808,7 @@ def test_compare_images_of_different_sizes(whitted, images):
     ("words", "message"),
     [
         (["a.png", "missing.png"], "missing.png: no such file"),
-        (["small.in", "8"], "expected a scene and perhaps WIDTH HEIGHT, or two images, found 2 arguments"),
+        (["small.in", "8"], "perhaps a picture and perhaps WIDTH HEIGHT, or two images, found 2 arguments"),
         (["small.in", "8", "6", "4"], "found 4 arguments"),
         (["small.in", "8", "x"], "WIDTH and HEIGHT: each must be a whole number, found 'x'"),
         (["small.in", "--limit", "-1"], "argument --limit: must not be negative"),
@@ -836,7 +842,8 @@ def test_convert(whitted, scene, tmp_path, mi):
     assert status == 0
     assert f"{folder}/scene.xml\n" in out
     python = out[out.index("import mitsuba") :]
-    assert len(python.splitlines()) == 2
+    assert len(python.splitlines()) == 4
+    assert python.splitlines()[-1] == 'mitsuba_plugins.write_image("picture.png", image)'
     assert f"load_file('{folder}/scene.xml')" in python
     assert mi.load_file(str(folder / "scene.xml")).sensors()[0].film().crop_size()[0] == 40
 

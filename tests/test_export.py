@@ -1,11 +1,16 @@
 """`whitted convert`: a folder that Mitsuba loads, whose picture is `whitted render`'s."""
 
 import errno
+import subprocess
+import sys
 
 import numpy as np
 import pytest
 from variant import VARIANT
 
+import mitsuba_plugins
+from converter.images.texture import read_texture
+from converter.images.write import write_image
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.scene.model import Texmap
 from converter.scene.settings import Settings
@@ -35,6 +40,34 @@ def test_same_bits_as_render(mi, textured, tmp_path):
     assert np.array_equal(exported, rendered.pixels)
 
 
+@pytest.mark.parametrize("name", ["picture.png", "picture.ppm", "picture.exr"])
+def test_what_the_readme_shows_writes_the_bytes_of_render(small_scene, tmp_path, name):
+    """In a fresh process, word by word; and what it warns of is true."""
+    settings = Settings(width=40, height=30)
+    folder = export_scene(small_scene, settings, tmp_path / "out")[0].parent
+    program = "\n".join(
+        line[4:] for line in (folder / "README.txt").read_text().splitlines() if line.startswith("    ")
+    )
+    assert program.splitlines()[-1] == 'mitsuba_plugins.write_image("picture.png", image)'
+    program = program.replace("set_variant()", "set_variant('llvm_ad_rgb')").replace("picture.png", name)
+    program += "\nmitsuba.util.write_bitmap('bitmap.png', image, write_async=False)"
+    subprocess.run([sys.executable, "-c", program], cwd=folder, check=True)
+    rendered = MitsubaRenderer("llvm_ad_rgb").render(small_scene, settings)
+    write_image(tmp_path / name, rendered.pixels, 40, 30)
+    assert (folder / name).read_bytes() == (tmp_path / name).read_bytes()
+    bitmap = np.asarray(read_texture(folder / "bitmap.png").texels)
+    ours = np.clip(rendered.pixels, 0, 1)
+    assert (bitmap >= ours - 1 / 255).all()
+    assert (np.abs(bitmap - ours) > 1 / 255).any(axis=2).mean() > 0.9
+
+
+def test_an_image_of_another_shape_is_refused(tmp_path):
+    for shape in ((4, 4), (4, 4, 4), (0, 4, 3)):
+        with pytest.raises(ValueError, match="expected"):
+            mitsuba_plugins.write_image(tmp_path / "a.png", np.zeros(shape))
+    assert list(tmp_path.iterdir()) == []
+
+
 def test_merged_meshes(mi, small_scene, tmp_path, capfd):
     """Mitsuba's default is to merge meshes of one material: nothing to the exact surfaces, but Embree's are lost."""
     from dataclasses import replace
@@ -60,8 +93,6 @@ def _causes(error):
 def test_loads_on_one_core(small_scene, tmp_path):
     """Shows why `backend` starts a worker: without one Mitsuba's `load_file` never returns."""
     import os
-    import subprocess
-    import sys
 
     file = export_scene(small_scene, Settings(width=4, height=3), tmp_path / "out")[0]
     program = (

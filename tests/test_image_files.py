@@ -61,6 +61,13 @@ def test_hdr_keeps_what_it_can(tmp_path: Path) -> None:
     np.testing.assert_allclose(np.asarray(read_texture(tmp_path / "a.hdr").texels), expected, atol=1.5)
 
 
+@pytest.mark.parametrize("ending", [".exr", ".tif", ".png"])
+def test_the_same_picture_is_the_same_file_later(ending: str, tmp_path: Path) -> None:
+    file = tmp_path / f"a{ending}"
+    write_image(file, FINITE, 2, 2)
+    assert not oiio.ImageBuf(str(file)).spec().get_string_attribute("DateTime")
+
+
 @pytest.mark.parametrize("ending", [".jpg", ".jpeg", ".webp", ".gif", ".jp2"])
 def test_lossy_formats_come_close(ending: str, tmp_path: Path) -> None:
     ramp = np.linspace(0, 1, 64, dtype=np.float32)

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 from converter.commands.exits import OK, UsageError
 from converter.commands.method_options import add_variant, check_variant, method_named
 from converter.commands.options import Parser, add_reading_options, settings_from, size, whole
+from converter.commands.results import Result, TextResult, chart_ending
+from converter.descriptors import STANDARD_OUTPUT
 
 if TYPE_CHECKING:
     from converter.renderers.methods import Method
@@ -26,7 +28,14 @@ def parser() -> Parser:
         "whitted chart scenes/figure1.in -o chart.svg --csv chart.csv",
     )
     result.add_argument("scenes", type=Path, nargs="+", metavar="SCENE", help="scene files, a column of the chart each")
-    result.add_argument("-o", "--out", type=Path, required=True, metavar="FILE", help="the chart, .svg or .png")
+    result.add_argument(
+        "-o",
+        "--out",
+        action=Result,
+        required=True,
+        metavar="FILE",
+        help="the chart, .svg or .png; - is the standard output, as SVG",
+    )
     result.add_argument("--size", type=size, default="800x600", metavar="WxH", help="of the pictures (%(default)s)")
     group = result.add_argument_group("what is measured; `whitted methods` lists the methods")
     group.add_argument(
@@ -45,9 +54,17 @@ def parser() -> Parser:
     )
     add_variant(group, "llvm_ad_rgb, except for mitsuba-cuda")
     group = result.add_argument_group("what is told")
-    group.add_argument("--csv", type=Path, metavar="FILE", help="write a line for every method on every scene")
     group.add_argument(
-        "--json", metavar="FILE", help="write every run too; - is the standard output, without the table"
+        "--csv",
+        action=TextResult,
+        metavar="FILE",
+        help="write a line for every method on every scene; - is the standard output, without the table",
+    )
+    group.add_argument(
+        "--json",
+        action=TextResult,
+        metavar="FILE",
+        help="write every run too; - is the standard output, without the table",
     )
     group.add_argument("-q", "--quiet", action="store_true", help="no notes, no progress bar")
     add_reading_options(result, bounces=False)
@@ -69,18 +86,15 @@ def _methods(text: str) -> "list[Method]":
 
 def run(arguments: argparse.Namespace) -> int:
     """Measure, draw, and tell."""
-    from converter.commands.json_out import check_json, write_json
+    from converter.commands.json_out import check_json, write_json, write_text
     from converter.files import check_target, replacing
-    from converter.studies.chart_figure import ENDINGS
 
-    out: Path = arguments.out
-    if out.suffix.lower() not in ENDINGS:
-        raise UsageError(f"argument -o/--out: must end in {' or '.join(ENDINGS)}, found {str(out)!r}")
+    ending = chart_ending(arguments.out)
     methods = _chosen(arguments)
     check_variant(arguments, methods)
     arguments.width, arguments.height = arguments.size
     settings = settings_from(arguments)
-    for file in (out, arguments.csv):
+    for file in (arguments.out, arguments.csv):
         if file is not None:
             check_target(file, arguments.scenes)
     check_json(arguments.json, arguments.scenes)
@@ -90,12 +104,11 @@ def run(arguments: argparse.Namespace) -> int:
     from converter.studies.chart_figure import draw_chart
     from converter.studies.chart_report import to_csv, to_json
 
-    with replacing(out) as temporary:
+    with replacing(arguments.out, ending) as temporary:
         draw_chart(studies, temporary)
     if arguments.csv is not None:
-        with replacing(arguments.csv) as temporary:
-            temporary.write_text(to_csv(studies), encoding="utf-8")
-    if arguments.json != "-":
+        write_text(arguments.csv, to_csv(studies))
+    if STANDARD_OUTPUT not in (arguments.csv, arguments.json):
         for study in studies:
             _print(study)
     write_json(arguments.json, to_json(studies))

@@ -4,8 +4,9 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from converter.commands.exits import OK
+from converter.commands.exits import OK, UsageError
 from converter.commands.options import Parser, add_reading_options, add_size, settings_from
+from converter.files import is_special
 
 if TYPE_CHECKING:
     from converter.scene.model import Scene
@@ -41,6 +42,8 @@ def parser() -> Parser:
 def run(arguments: argparse.Namespace) -> int:
     """Write the files, and tell."""
     settings = settings_from(arguments)
+    if arguments.out == Path("-") or is_special(arguments.out):
+        raise UsageError(f"DIR|FILE.pov: must be a folder, or a file beside its textures, found {str(arguments.out)!r}")
 
     from converter.commands.notes import load_with_notices
 
@@ -67,8 +70,13 @@ def _to_mitsuba(scene: "Scene", settings: "Settings", out: Path, quiet: bool) ->
             f"note: of more than {MOST_SHAPES} objects no shapes are made: the `whitted` integrator alone sees them",
             quiet,
         )
-    load = f"image = mitsuba.render(mitsuba.load_file({str(files[0])!r}))"
-    return files, f"In Python:\n\nimport mitsuba_plugins, mitsuba; mitsuba_plugins.set_variant()\n{load}"
+    lines = (
+        "import mitsuba_plugins, mitsuba",
+        "mitsuba_plugins.set_variant()",
+        f"image = mitsuba.render(mitsuba.load_file({str(files[0])!r}))",
+        'mitsuba_plugins.write_image("picture.png", image)',
+    )
+    return files, "In Python:\n\n" + "\n".join(lines)
 
 
 def _to_povray(scene: "Scene", settings: "Settings", out: Path, quiet: bool) -> tuple[list[Path], str]:

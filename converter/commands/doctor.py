@@ -88,13 +88,13 @@ def _findings() -> tuple[list[tuple[str, str]], list[str], bool]:
     if not working:
         advice.append("Mitsuba does not run here; the native tracer needs none of it: --method native.")
     if library is None or blames_llvm:
-        advice.append(_llvm_advice(MINIMUM_LLVM))
+        advice.append(_llvm_advice(MINIMUM_LLVM, library is not None and library.by_user))
     rows.append(("kernel cache", _kernel_cache()))
     return rows, advice, native.works and bool(working)
 
 
-def _llvm_advice(least: int) -> str:
-    if os.environ.get("DRJIT_LIBLLVM_PATH"):
+def _llvm_advice(least: int, by_user: bool) -> str:
+    if by_user:
         return "DRJIT_LIBLLVM_PATH names the LLVM library that is used: unset it, or name another."
     return (
         f"llvm_ad_rgb needs an LLVM library of version {least} or newer. On x86-64 Linux: pip install "

@@ -7,7 +7,9 @@ from typing import Any
 
 from converter.commands.exits import OK
 from converter.commands.options import Parser, add_reading_options, settings_from
+from converter.commands.results import TextResult
 from converter.commands.tables import print_table
+from converter.descriptors import STANDARD_OUTPUT
 
 MOST_ROWS = 20
 """Rows of a table; a scene may have thousands of polyhedra."""
@@ -23,7 +25,12 @@ def parser() -> Parser:
         "whitted inspect figure1.in",
     )
     result.add_argument("scene", type=Path, metavar="SCENE", help="the scene file")
-    result.add_argument("--json", metavar="FILE", help="write it as JSON; - is the standard output, without the tables")
+    result.add_argument(
+        "--json",
+        action=TextResult,
+        metavar="FILE",
+        help="write it as JSON; - is the standard output, without the tables",
+    )
     add_reading_options(result, picture=False)
     return result
 
@@ -38,7 +45,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     check_json(arguments.json, [arguments.scene])
     found = inspect_scene(load_scene(arguments.scene), settings)
-    if arguments.json != "-":
+    if arguments.json != STANDARD_OUTPUT:
         _print(found)
     write_json(arguments.json, found)
     return OK

@@ -1,4 +1,4 @@
-"""Results as JSON, into a file or to stdout."""
+"""Results as text, JSON above all, into a file or to the standard output."""
 
 import json
 import math
@@ -6,33 +6,38 @@ from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
+from converter.descriptors import STANDARD_OUTPUT
 from converter.files import check_target, replacing
 
 
-def check_json(file: str | None, sources: Iterable[Path] = ()) -> None:
+def check_json(file: Path | None, sources: Iterable[Path] = ()) -> None:
     """See that `file` can be written, so that no one waits for a result that cannot be saved.
 
     Raises:
         OSError: it cannot, or is one of the `sources`.
 
     """
-    if file is not None and file != "-":
-        check_target(Path(file), sources)
+    if file is not None:
+        check_target(file, sources)
 
 
-def write_json(file: str | None, result: Any) -> None:
-    """Write `result` to `file`, which appears whole or not at all: `-` is stdout, None nowhere.
+def write_json(file: Path | None, result: Any) -> None:
+    """Write `result` to `file`, which appears whole or not at all; None is nowhere.
 
     NaN and infinities, unknown to JSON, become null.
     """
     if file is None:
         return
-    text = json.dumps(_finite(result), indent=2, allow_nan=False)
-    if file == "-":
-        print(text)
-    else:
-        with replacing(Path(file)) as temporary:
-            temporary.write_text(text + "\n", encoding="utf-8")
+    write_text(file, json.dumps(_finite(result), indent=2, allow_nan=False) + "\n")
+
+
+def write_text(file: Path, text: str) -> None:
+    """Write a text to `file`, which appears whole or not at all."""
+    if file == STANDARD_OUTPUT:
+        print(text, end="")
+        return
+    with replacing(file) as temporary:
+        temporary.write_text(text, encoding="utf-8")
 
 
 def _finite(value: Any) -> Any:

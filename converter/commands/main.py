@@ -49,9 +49,14 @@ def _dispatch(words: list[str]) -> int:
             raise UsageError(f"there is no command {name!r}{did_you_mean(name, tuple(COMMANDS))}")
     from importlib import import_module
 
+    from converter.commands.options import given_options
+    from converter.commands.results import standard_output_shared
+
     command = import_module(f"converter.commands.{words[0]}")
     arguments = command.parser().parse_intermixed_args(words[1:])
-    return int(command.run(arguments))
+    arguments.given = given_options(words[1:])
+    with standard_output_shared(arguments):
+        return int(command.run(arguments))
 
 
 def _help() -> str:

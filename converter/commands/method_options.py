@@ -1,6 +1,8 @@
 """Which method draws, as the arguments say."""
 
 import argparse
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import TYPE_CHECKING, NamedTuple
 
 from converter.commands.exits import UsageError
@@ -10,6 +12,10 @@ if TYPE_CHECKING:
     from converter.renderers.base import Renderer
     from converter.renderers.methods import Method
     from converter.scene.settings import Settings
+
+
+METHOD, REFERENCE = "mitsuba", "native"
+"""What draws, and what is trusted, where nobody says so."""
 
 
 class Chosen(NamedTuple):
@@ -30,17 +36,45 @@ def method_named(text: str) -> "Method":
         raise argparse.ArgumentTypeError(str(error)) from None
 
 
-def add_method_options(parser: argparse.ArgumentParser, reference: str | None = None) -> None:
-    """`--method`, `--variant`, and `--reference` with its help where there is a picture to compare with."""
+def add_method_options(
+    parser: argparse.ArgumentParser, reference: str | None = None, method: str = "what draws"
+) -> None:
+    """`--method` and `--variant`, and `--reference` where there is a picture to compare with; with their help."""
     group = parser.add_argument_group("the method; `whitted methods` lists them")
-    group.add_argument(
-        "--method", type=method_named, default="mitsuba", metavar="NAME", help="what draws (%(default)s)"
-    )
+    group.add_argument("--method", type=method_named, default=METHOD, metavar="NAME", help=f"{method} (%(default)s)")
     if reference is not None:
         group.add_argument(
-            "--reference", type=method_named, default="native", metavar="NAME", help=f"{reference} (%(default)s)"
+            "--reference", type=method_named, default=REFERENCE, metavar="NAME", help=f"{reference} (%(default)s)"
         )
     add_variant(group)
+
+
+def method_words(reference: "Method", method: "Method", variant: str | None) -> list[str]:
+    """The options of `add_method_options` that ask for these."""
+    words = [] if variant is None else ["--variant", variant]
+    for option, asked, usual in (("--method", method, METHOD), ("--reference", reference, REFERENCE)):
+        if asked.name != usual:
+            words = [option, asked.name, *words]
+    return words
+
+
+@contextmanager
+def native_instead(name: str, instead: str = "--method native") -> Iterator[None]:
+    """Within it, a method of Mitsuba that does not run here is told with an option `instead` that does without.
+
+    Raises:
+        RendererUnavailable: as within it, with more to say.
+
+    """
+    from converter.renderers.base import RendererUnavailable
+    from converter.renderers.methods import METHODS
+
+    try:
+        yield
+    except RendererUnavailable as error:
+        if METHODS[name].family != "mitsuba" or METHODS[REFERENCE].missing() is not None:
+            raise
+        raise RendererUnavailable(f"{error}\n{instead} draws without Mitsuba") from error
 
 
 def add_variant(group: argparse._ArgumentGroup, default: str = "auto: a GPU if any") -> None:

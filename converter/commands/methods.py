@@ -5,7 +5,9 @@ from itertools import groupby
 
 from converter.commands.exits import OK
 from converter.commands.options import Parser
+from converter.commands.results import TextResult
 from converter.commands.tables import print_table
+from converter.descriptors import STANDARD_OUTPUT
 
 
 def parser() -> Parser:
@@ -17,7 +19,12 @@ def parser() -> Parser:
         "has a dash before it, and why behind it.",
         "whitted methods",
     )
-    result.add_argument("--json", metavar="FILE", help="write them as JSON; - is the standard output, without the list")
+    result.add_argument(
+        "--json",
+        action=TextResult,
+        metavar="FILE",
+        help="write them as JSON; - is the standard output, without the list",
+    )
     return result
 
 
@@ -28,7 +35,7 @@ def run(arguments: argparse.Namespace) -> int:
 
     check_json(arguments.json)
     missing = {name: method.missing() for name, method in METHODS.items()}
-    if arguments.json != "-":
+    if arguments.json != STANDARD_OUTPUT:
         width = max(map(len, METHODS))
         for group, methods in groupby(METHODS.values(), lambda method: method.group):
             rows = []

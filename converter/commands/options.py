@@ -3,6 +3,7 @@
 import argparse
 import math
 import os
+from collections.abc import Sequence
 from dataclasses import fields
 from typing import NoReturn
 
@@ -202,6 +203,24 @@ def add_running_options(parser: argparse.ArgumentParser) -> None:
         metavar="N",
         help="start of the random numbers, in scenes that use any (%(default)s)",
     )
+
+
+def given_options(words: Sequence[str]) -> frozenset[str]:
+    """The long options among a command's words."""
+    before = words[: words.index("--")] if "--" in words else words
+    return frozenset(word.partition("=")[0] for word in before if word.startswith("--"))
+
+
+def reading_words(settings: Settings) -> list[str]:
+    """The options of `add_reading_options` that ask for `settings`."""
+    words = []
+    for name in ("pixel", "specular", "samples", "ior", "background", "cutoff", "max_depth"):
+        value = getattr(settings, name)
+        if value != getattr(DEFAULTS, name):
+            option = f"--{name.replace('_', '-')}"
+            text = ",".join(map(repr, value)) if isinstance(value, tuple) else str(value)
+            words += [f"{option}={text}"] if text.startswith("-") else [option, text]
+    return words
 
 
 def settings_from(arguments: argparse.Namespace) -> Settings:

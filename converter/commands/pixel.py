@@ -5,8 +5,10 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from converter.commands.exits import OK, UsageError
-from converter.commands.method_options import add_method_options, check_variant, choose
+from converter.commands.method_options import add_method_options, check_variant, choose, native_instead
 from converter.commands.options import Parser, add_reading_options, add_size, position, settings_from
+from converter.commands.results import TextResult
+from converter.descriptors import STANDARD_OUTPUT
 
 if TYPE_CHECKING:
     from converter.compare.ray_listing import Line
@@ -28,7 +30,12 @@ def parser() -> Parser:
     result.add_argument("y", type=position, metavar="Y", help="the pixel's row, 0 is the top one")
     add_size(result)
     group = result.add_argument_group("what is told")
-    group.add_argument("--json", metavar="FILE", help="write the ray trees; - is the standard output, without the list")
+    group.add_argument(
+        "--json",
+        action=TextResult,
+        metavar="FILE",
+        help="write the ray trees; - is the standard output, without the list",
+    )
     group.add_argument("-q", "--quiet", action="store_true", help="no notes")
     add_reading_options(result)
     add_method_options(result, "what the rays to be trusted are traced by; the same as --method: only this one")
@@ -56,8 +63,9 @@ def run(arguments: argparse.Namespace) -> int:
     scene = load_with_notices(arguments.scene, settings, arguments.quiet)
     traced: dict[str, dict[str, Any]] = {}
     for name, _, changed in chosen:
-        traced[name] = tracers[name](scene, changed, x, y)
-    if arguments.json != "-":
+        with native_instead(name):
+            traced[name] = tracers[name](scene, changed, x, y)
+    if arguments.json != STANDARD_OUTPUT:
         print(f"{arguments.scene} at {settings.width} x {settings.height}, pixel ({x}, {y}): {' | '.join(traced)}\n")
         _list(scene, traced)
     write_json(arguments.json, traced)

@@ -22,6 +22,7 @@ def main(argv: Sequence[str] | None = None) -> int:
 def parser() -> "Parser":
     """The program's arguments."""
     from converter.commands.options import Parser, add_size
+    from converter.commands.results import Result
 
     result = Parser(
         "raytrace",
@@ -31,7 +32,12 @@ def parser() -> "Parser":
         "raytrace figure1.in figure2.ppm 600 450",
     )
     result.add_argument("scene", metavar="SCENE", help="the scene file")
-    result.add_argument("out", metavar="OUT", help="the picture: .png, .exr, ... as its ending says, else PPM")
+    result.add_argument(
+        "out",
+        action=Result,
+        metavar="OUT",
+        help="the picture: .png, .exr, ... as its ending says, else PPM; - is the standard output",
+    )
     add_size(result)
     result.add_argument("-V", "--version", action="store_true", help="show the version and exit")
     return result
@@ -48,9 +54,11 @@ def _dispatch(words: list[str]) -> int:
     from pathlib import Path
 
     from converter.commands.options import settings_from
+    from converter.commands.results import standard_output_shared
 
     arguments = parser().parse_args(words)
-    _draw(Path(arguments.scene), Path(arguments.out), settings_from(arguments))
+    with standard_output_shared(arguments):
+        _draw(Path(arguments.scene), arguments.out, settings_from(arguments))
     return OK
 
 

@@ -5,8 +5,10 @@ import sys
 from pathlib import Path
 
 from converter.commands.exits import OK
-from converter.commands.method_options import add_method_options, check_variant, choose
+from converter.commands.method_options import add_method_options, check_variant, choose, native_instead
 from converter.commands.options import Parser, add_reading_options, add_running_options, add_size
+from converter.commands.results import Result, TextResult
+from converter.descriptors import STANDARD_OUTPUT
 
 
 def parser() -> Parser:
@@ -15,20 +17,38 @@ def parser() -> Parser:
         "whitted render",
         "SCENE OUT [WIDTH HEIGHT] [options]",
         "Draws a scene into an image file: .ppm, .png, or .exr, which keeps the colours unclamped.",
-        "whitted render figure1.in figure2.png 1600 1200 --samples 9",
+        "whitted render figure1.in figure2.png 1600 1200 --samples 9\n"
+        "  whitted render figure1.in - --format png | display",
     )
     result.add_argument("scene", type=Path, metavar="SCENE", help="the scene file")
-    result.add_argument("out", type=Path, metavar="OUT", help="the picture; its ending says what kind of file")
+    result.add_argument(
+        "out",
+        action=Result,
+        metavar="OUT",
+        help="the picture; its ending says what kind of file; - is the standard output",
+    )
     add_size(result)
     add_reading_options(result)
     add_running_options(result)
     add_method_options(result)
     group = result.add_argument_group("what is told and kept")
     group.add_argument("-q", "--quiet", action="store_true", help="no notes, no progress bar, no closing line")
+    group.add_argument(
+        "--format", type=_ending, metavar="NAME", help="ppm, png, exr, ... whatever OUT ends in (PPM into a pipe)"
+    )
     group.add_argument("--stats", action="store_true", help="print seconds by stage, rays and memory")
-    group.add_argument("--json", metavar="FILE", help="write what --stats prints; - is the standard output")
+    group.add_argument(
+        "--json",
+        action=TextResult,
+        metavar="FILE",
+        help="write what --stats prints; - is the standard output, without the table",
+    )
     group.add_argument("--keep-partial", action="store_true", help="on Ctrl-C write what is finished")
     return result
+
+
+def _ending(text: str) -> str:
+    return f".{text.lower().removeprefix('.')}"
 
 
 def run(arguments: argparse.Namespace) -> int:
@@ -46,12 +66,20 @@ def run(arguments: argparse.Namespace) -> int:
         import logging
 
         logging.getLogger("mitsuba_plugins").setLevel(logging.ERROR)
-    rendering, stages = draw(
-        method.renderer, arguments.scene, arguments.out, settings, quiet, arguments.keep_partial, arguments.method
-    )
+    with native_instead(method.name):
+        rendering, stages = draw(
+            method.renderer,
+            arguments.scene,
+            arguments.out,
+            settings,
+            quiet,
+            arguments.keep_partial,
+            arguments.method,
+            arguments.format,
+        )
     seconds = sum(stages.values())
     say(f"{arguments.out}: {settings.width} x {settings.height}, {method.name}, {seconds:.2f} s", quiet)
-    if arguments.stats:
+    if arguments.stats and arguments.json != STANDARD_OUTPUT:
         from converter.commands.tables import print_table
 
         rows = [(stage, f"{spent:.4f} s") for stage, spent in stages.items()]

@@ -7,6 +7,8 @@ from typing import TYPE_CHECKING
 from converter.commands.exits import OK, UsageError
 from converter.commands.method_options import add_variant, check_variant, method_named
 from converter.commands.options import Parser
+from converter.commands.results import Result, TextResult, chart_ending
+from converter.descriptors import STANDARD_OUTPUT
 
 if TYPE_CHECKING:
     from converter.renderers.methods import Method
@@ -35,14 +37,25 @@ def parser() -> Parser:
         "holds: a picture holds if no pixel differs from the truth by more than 1/255.",
         "whitted stability -o stability.svg --families size,position",
     )
-    result.add_argument("-o", "--out", type=Path, metavar="FILE", help="the chart, .svg or .png")
+    result.add_argument(
+        "-o",
+        "--out",
+        action=Result,
+        metavar="FILE",
+        help="the chart, .svg or .png; - is the standard output, as SVG",
+    )
     group = result.add_argument_group("what is tried; `whitted methods` lists the methods")
     group.add_argument("--methods", type=_methods, metavar="NAME,...|all", help=f"({', '.join(USUAL)})")
     group.add_argument("--families", type=_families, metavar="NAME,...|all", default="all", help="(%(default)s)")
     group.add_argument("--list", action="store_true", help="say what the families are, and end")
     add_variant(group, "llvm_ad_rgb, except for mitsuba-cuda")
     group = result.add_argument_group("what is told")
-    group.add_argument("--json", metavar="FILE", help="write every figure; - is the standard output, without the table")
+    group.add_argument(
+        "--json",
+        action=TextResult,
+        metavar="FILE",
+        help="write every figure; - is the standard output, without the table",
+    )
     group.add_argument(
         "--docs", type=Path, metavar="FOLDER", help="write stability.md there, and the pictures that it shows"
     )
@@ -78,7 +91,6 @@ def run(arguments: argparse.Namespace) -> int:
     """Try, draw, and tell."""
     from converter.commands.json_out import check_json, write_json
     from converter.files import check_target, replacing
-    from converter.studies.chart_figure import ENDINGS
 
     if arguments.list:
         _list(arguments.families)
@@ -87,8 +99,7 @@ def run(arguments: argparse.Namespace) -> int:
     if out is None and arguments.docs is None:
         raise UsageError("the following arguments are required: -o/--out, or --docs")
     if out is not None:
-        if out.suffix.lower() not in ENDINGS:
-            raise UsageError(f"argument -o/--out: must end in {' or '.join(ENDINGS)}, found {str(out)!r}")
+        ending = chart_ending(out)
         check_target(out)
     if arguments.docs is not None:
         check_target(arguments.docs / "stability.md")
@@ -101,13 +112,13 @@ def run(arguments: argparse.Namespace) -> int:
     from converter.studies.stability_report import to_json
 
     if out is not None:
-        with replacing(out) as temporary:
+        with replacing(out, ending) as temporary:
             draw_stability(studies, temporary)
     if arguments.docs is not None:
         from converter.studies.stability_page import write_page
 
         write_page(studies, arguments.docs)
-    if arguments.json != "-":
+    if arguments.json != STANDARD_OUTPUT:
         _print(studies, missing)
     write_json(arguments.json, to_json(studies))
     return OK

@@ -32,8 +32,10 @@ class Panel:
     pixels: Pixels
 
 
-def draw_figure(report: Report, file: Path, amplification: float) -> None:
+def draw_figure(report: Report, file: Path, amplification: float, ending: str | None = None) -> None:
     """Draw both pictures, their difference times `amplification`, and the FLIP map, side by side into an image file.
+
+    `ending` chooses the image's format, if `file` does not.
 
     Raises:
         OSError: it cannot be written.
@@ -46,13 +48,13 @@ def draw_figure(report: Report, file: Path, amplification: float) -> None:
     difference[np.isnan(difference).any(axis=2)] = NOT_FINITE
     sheet = side_by_side(
         (
-            Panel(shown_name(pictures.reference), pictures.reference_pixels),
-            Panel(shown_name(pictures.test), pictures.test_pixels),
+            Panel(f"reference: {shown_name(pictures.reference)}", pictures.reference_pixels),
+            Panel(f"candidate: {shown_name(pictures.test)}", pictures.test_pixels),
             Panel(f"difference x {amplification:g}", difference),
             Panel(f"FLIP, mean {report.flip_mean:.3g}", _magma(report.flip)),
         )
     )
-    write_image(file, sheet, sheet.shape[1], sheet.shape[0])
+    write_image(file, sheet, sheet.shape[1], sheet.shape[0], ending)
 
 
 def side_by_side(panels: tuple[Panel, ...]) -> Pixels:

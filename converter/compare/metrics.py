@@ -94,6 +94,24 @@ def compare_pixels(reference: Pixels, test: Pixels) -> Difference:
     )
 
 
+def count_shifted(reference: Pixels, test: Pixels) -> int:
+    """Of the pixels that disagree those in which `test` may be `reference` shifted by less than a pixel.
+
+    Their colours lie, in every channel, between the least and the largest of the pixel and its eight neighbours.
+
+    Raises:
+        SizeMismatch: their sizes differ.
+
+    """
+    disagrees = ~(absolute_difference(reference, test) <= LIMIT).all(axis=2)
+    height, width, _ = reference.shape
+    padded = np.pad(reference, ((1, 1), (1, 1), (0, 0)), mode="edge")
+    around = [padded[y : y + height, x : x + width] for y in range(3) for x in range(3)]
+    least, largest = np.fmin.reduce(around), np.fmax.reduce(around)
+    between = ((least - LIMIT <= test) & (test <= largest + LIMIT)).all(axis=2)
+    return int((disagrees & between).sum())
+
+
 def check_sizes(reference: Pixels, test: Pixels) -> None:
     """Raise `SizeMismatch` if two pictures cannot be laid on each other."""
     if reference.shape != test.shape:

@@ -11,7 +11,7 @@ from numpy.typing import NDArray
 
 from converter.compare.classes import Explanation
 from converter.compare.flip import flip_map
-from converter.compare.metrics import Difference, Pixels, clamped, compare_pixels
+from converter.compare.metrics import Difference, Pixels, clamped, compare_pixels, count_shifted
 from converter.scene.model import Color
 
 
@@ -48,6 +48,7 @@ class Report:
         pictures: what was compared.
         difference: between them as they are.
         clamped: between them as image files show them, clamped to 0..1.
+        shifted: pixels that disagree, but may be the reference's, shifted by less than a pixel: at edges.
         flip: FLIP error of each pixel.
         limit_percent: share of disagreeing pixels up to which they agree.
         explanation: why pixels disagree, where it was looked for.
@@ -57,6 +58,7 @@ class Report:
     pictures: Pictures
     difference: Difference
     clamped: Difference
+    shifted: int
     flip: NDArray[np.float32]
     limit_percent: float
     explanation: Explanation | None = None
@@ -84,6 +86,7 @@ def make_report(pictures: Pictures, limit_percent: float) -> Report:
         pictures=pictures,
         difference=compare_pixels(reference, test),
         clamped=compare_pixels(clamped(reference), clamped(test)),
+        shifted=count_shifted(reference, test),
         flip=flip_map(reference, test),
         limit_percent=limit_percent,
     )
@@ -100,6 +103,8 @@ def difference_rows(report: Report) -> list[tuple[str, str]]:
     """What is compared and what came out, for a table; the clamped figures only where they say something else."""
     found = report.difference
     rows = [("pixels that disagree", _disagreeing(found))]
+    if found.disagreeing and report.explanation is None:
+        rows.append(("  off by less than a pixel", f"{report.shifted} of {found.disagreeing}"))
     if found.not_finite:
         rows.append(("pixels not finite", str(found.not_finite)))
     if report.clamped.disagreeing != found.disagreeing:
@@ -140,6 +145,7 @@ def to_json(report: Report) -> dict[str, Any]:
         "limit_percent": report.limit_percent,
         "agrees": report.agrees,
         "clamped": _difference_json(report.clamped),
+        "shifted": report.shifted,
         "classes": _classes_json(report.explanation),
         "seconds": {
             name: {"cold": t.cold, "warm_median": t.warm_median, "warm": t.warm, "stages": dict(t.stages)}
@@ -165,12 +171,10 @@ def _largest_rows(name: str, report: Report, found: Difference) -> list[tuple[st
         return [(name, "0")]
     amount = f"{largest.difference:.3g}" if math.isfinite(largest.difference) else "not finite"
     channel = ("red", "green", "blue")[largest.channel]
-    names = report.pictures.reference, report.pictures.test
-    width = max(map(len, names))
     return [
         (name, f"{amount} in {channel} at ({largest.x}, {largest.y})"),
-        ("", f"{names[0]:{width}}  {_shown(largest.reference)}"),
-        ("", f"{names[1]:{width}}  {_shown(largest.test)}"),
+        ("", f"reference  {_shown(largest.reference)}"),
+        ("", f"candidate  {_shown(largest.test)}"),
     ]
 
 

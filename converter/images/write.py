@@ -9,7 +9,8 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from converter.files import is_special, replacing, temporary_name
+from converter.descriptors import named_descriptor
+from converter.files import check_special, is_special, replacing, temporary_name
 
 COMMON_ENDINGS = (".ppm", ".png", ".exr", ".jpg", ".tif", ".hdr", ".pfm", ".bmp", ".tga", ".webp")
 """Endings to suggest; OpenImageIO knows more."""
@@ -27,15 +28,15 @@ def check_writable(path: str | Path, ending: str | None = None) -> None:
     """See that `write_image` could write `path`, so that no one waits for a picture that cannot be saved.
 
     Raises:
-        ImageError: the ending is unknown, its folder missing or not writable, or it is a folder itself.
+        ImageError: the ending is unknown, its folder missing or not writable, or it is a folder itself, or a terminal.
     """
     path = Path(path)
-    ending = _known(path, ending)
     try:
-        target = _target(path)
-        if is_special(target):
+        ending = _known(path, ending)
+        if is_special(path):
+            _check_special(path)
             return
-        temporary = temporary_name(target, ending)
+        temporary = temporary_name(_target(path), ending)
         try:
             temporary.touch(exist_ok=False)
         finally:
@@ -49,30 +50,38 @@ def write_image(path: str | Path, pixels: Any, width: int, height: int, ending: 
     """Write a picture.
 
     Formats of 8 bits hold round(255 c), c clamped to 0..1 and NaN as 0, with no gamma; those of `FLOAT_ENDINGS` hold c.
-    The file appears as a whole or not at all, whatever happens; an older one is replaced. Into what is no file, such as
-    a pipe or /dev/null, the picture is copied.
+    The file appears as a whole or not at all, whatever happens; an older one is replaced. Into what is special, such as
+    a pipe, /dev/null or /dev/stdout, the picture is copied.
 
     Args:
         path: the file; if it is a link, what it points to is written.
         pixels: buffer of height x width x 3 float32, linear RGB, row 0 on top.
         width: columns.
         height: rows.
-        ending: chooses the format; that of `path`, if not given.
+        ending: chooses the format; that of `path`, if not given, and .ppm for what is special and has none.
 
     Raises:
         ImageError: it cannot be written.
+        BrokenPipeError: whoever reads the pipe went away.
         ValueError: `pixels` has another size.
     """
     path = Path(path)
     values = memoryview(pixels)
-    if values.format != "f" or not values.c_contiguous or values.nbytes != 12 * width * height or width < 1:
+    if (
+        values.format != "f"
+        or not values.c_contiguous
+        or values.nbytes != 12 * width * height
+        or min(width, height) < 1
+    ):
         expected = f"{width} x {height} pixels of three float32, one after the other"
         raise ValueError(f"expected {expected}, found {values.nbytes} bytes of format {values.format!r}")
-    ending = _known(path, ending)
-    write = _write_ppm if ending == ".ppm" else _write_other
     try:
-        with replacing(_target(path), ending) as temporary:
+        ending = _known(path, ending)
+        write = _write_ppm if ending == ".ppm" else _write_other
+        with replacing(path if is_special(path) else _target(path), ending) as temporary:
             write(temporary, values, width, height)
+    except BrokenPipeError:
+        raise
     except OSError as error:
         raise ImageError(f"{path}: {_reason(error, path)}") from error
 
@@ -101,7 +110,9 @@ def _write_other(path: Path, values: memoryview, width: int, height: int) -> Non
     output = oiio.ImageOutput.create(_utf8(path))
     if output is None:
         raise OSError(oiio.geterror())
-    done = output.open(str(path), oiio.ImageSpec(width, height, 3, format_))
+    spec = oiio.ImageSpec(width, height, 3, format_)
+    spec.attribute("DateTime", "")  # that of writing, else, and the same picture would be another file
+    done = output.open(str(path), spec)
     done = done and output.write_image(data)
     done = output.close() and done
     complaints = [line for line in output.geterror().splitlines() if _HARMLESS not in line]
@@ -121,8 +132,8 @@ def _utf8(path: Path) -> str:
 def _known(path: Path, given: str | None) -> str:
     """The given ending, else that of `path`; `ImageError` for a format that nobody writes."""
     ending = (path.suffix if given is None else given).lower()
-    if ending == ".ppm":
-        return ending
+    if ending == ".ppm" or (not ending and is_special(path)):
+        return ".ppm"
     if ending and ending not in _NO_FILES:
         import OpenImageIO as oiio  # noqa: N813
 
@@ -130,7 +141,14 @@ def _known(path: Path, given: str | None) -> str:
             return ending
         oiio.geterror()  # clears it
     found = f"unknown picture format {ending!r}" if ending else "no ending that says which picture format is meant"
-    raise ImageError(f"{path}: {found}; use one of {', '.join(COMMON_ENDINGS)}")
+    raise ImageError(f"{found}; use one of {', '.join(COMMON_ENDINGS)}")
+
+
+def _check_special(path: Path) -> None:
+    check_special(path)
+    descriptor = named_descriptor(path)
+    if descriptor is not None and os.isatty(descriptor):
+        raise ImageError("this is a terminal, which shows no picture: name a file, or send it on with > or |")
 
 
 def _target(path: Path) -> Path:

@@ -136,13 +136,16 @@ def _mitsuba_missing(method: Method) -> str | None:
 
     if find_spec("mitsuba") is None:
         return "Mitsuba is not installed: pip install mitsuba"
-    from mitsuba_plugins.backend import MINIMUM_LLVM, find_llvm, has_cuda
+    from mitsuba_plugins.backend import MINIMUM_LLVM, find_llvm, has_cuda, llvm_complaint
 
     if method.options.get("variant") == "cuda_ad_rgb":
         return None if has_cuda() else "no CUDA device answers on this machine"
-    if find_llvm() is None and not has_cuda():
+    if has_cuda():
+        return None
+    if find_llvm() is None:
         return f"neither a CUDA device nor an LLVM library of version {MINIMUM_LLVM} or newer is there"
-    return None
+    complaint = llvm_complaint()
+    return complaint and f"DRJIT_LIBLLVM_PATH names no library that will do: {complaint}"
 
 
 def _povray_missing(method: Method) -> str | None:

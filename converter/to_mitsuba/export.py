@@ -28,9 +28,17 @@ ELEMENTS = {
 """The kind of each plugin that descriptions name, as scene files mark it."""
 
 README = b"""\
-A Mitsuba 3 scene, written by `whitted convert`. Its plugins come with the Python package `whitted`. To render it:
-python -c "import mitsuba_plugins as p, mitsuba as mi; p.set_variant(); \\
-mi.util.write_bitmap('out.exr', mi.render(mi.load_file('scene.xml')))"
+A Mitsuba 3 scene, written by `whitted convert`. Its plugins come with the Python package `whitted`. To render it,
+in this folder:
+
+    import mitsuba_plugins, mitsuba             # in this order
+    mitsuba_plugins.set_variant()               # llvm_ad_rgb or cuda_ad_rgb: no other variant knows the plugins
+    image = mitsuba.render(mitsuba.load_file("scene.xml"))
+    mitsuba_plugins.write_image("picture.png", image)
+
+The last line writes the bytes that `whitted render` does. The course's colours are display values, while
+mitsuba.util.write_bitmap takes them for linear light and applies sRGB's curve: its .png and .jpg are much brighter, and
+differ in all pixels. An .exr holds the same numbers either way.
 """
 
 
