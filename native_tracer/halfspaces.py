@@ -38,7 +38,9 @@ class PolyhedronFacts(NamedTuple):
     inside: Vector
     """A point well inside, of a plate well inside its face."""
     conflict: tuple[int, ...]
-    """If there is no volume and no plate: two to four planes that leave none by themselves, none of which can be spared. If two touch, nothing of that plane is left."""
+    """If there is no volume and no plate: two to four planes that leave no volume by themselves, none of which can be
+    spared.
+    """
 
     @property
     def drawn(self) -> bool:

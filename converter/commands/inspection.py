@@ -7,7 +7,7 @@ from typing import Any
 from converter.scene.cutoff import cutoff_bound
 from converter.scene.model import Checker, Finish, Pigment, Polyhedron, Scene, Solid
 from converter.scene.needs import SceneNeeds, is_index, scene_needs
-from converter.scene.notices import scene_notices
+from converter.scene.notices import ior_notices, scene_notices
 from converter.scene.settings import Settings
 
 
@@ -45,7 +45,7 @@ def inspect_scene(scene: Scene, settings: Settings) -> dict[str, Any]:
             "max_depth": needs.max_depth,
         },
         "cutoff": asdict(cutoff_bound(scene, settings)),
-        "notices": scene_notices(scene, settings),
+        "notices": [*scene_notices(scene, settings), *ior_notices(scene, settings)],
         "warnings": _warnings(scene, settings),
     }
 
