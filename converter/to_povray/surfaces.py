@@ -14,10 +14,9 @@ def surface(shape: Shape, needs: SceneNeeds, index: int) -> str:
     if isinstance(shape, Sphere):
         return f"sphere {{ {vector(shape.center)}, {number(shape.radius)} }}"
     if plate := needs.plates[index]:
-        sides = "".join(
-            f"\n  clipped_by {{ {_plane(shape.planes[k])} }}" for k in needs.planes[index] if k not in plate
-        )
-        return f"plane {{ {_numbers(shape.planes[plate[0]])}{sides}\n}}"
+        sides = "".join(f"\n    {_plane(shape.planes[k])}" for k in needs.planes[index] if k not in plate)
+        clipped = f"\n  clipped_by {{{sides}\n  }}" if sides else ""
+        return f"plane {{ {_numbers(shape.planes[plate[0]])}{clipped}\n}}"
     planes = [shape.planes[k] for k in needs.planes[index]]
     if len(planes) == 1:
         return _plane(planes[0])
