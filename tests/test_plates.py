@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 from test_halfspaces import PLATE, moved
 
+from converter.compare.margins import crossings, edge_margin, silhouette_margin, surface_margin
 from converter.regions.warnings import region_warnings
 from converter.renderers.methods import METHODS
 from converter.renderers.native import NativeRenderer
@@ -131,6 +132,16 @@ def test_the_mesh_of_a_plate_is_one_polygon():
     assert (len(mesh.vertices), mesh.planes.tolist(), mesh.outside) == (4, [2, 2], ())
     cut = polyhedron_mesh(PLATE[2:4], box)
     assert np.abs(cut.vertices).max(axis=0).tolist() == [10, 0, 10]
+
+
+@pytest.mark.parametrize("direction", [(0.0, -1.0, 0.0), (0.0, 1.0, 0.0), (0.3, -0.9, 0.1)])
+def test_what_differs_on_a_plate_is_not_explained_by_its_other_side(direction):
+    d = np.array(direction) / np.linalg.norm(direction)
+    shape = Polyhedron(tuple(PLATE))
+    assert silhouette_margin(shape, -5 * d, d) > 0.4
+    assert edge_margin(shape, -5 * d, d) > 0.4
+    assert surface_margin(shape, np.zeros(3), on_it=True) == 1
+    assert tuple(crossings(shape, -5 * d, d)[0]) == pytest.approx((5, d[1] if d[1] < 0 else 1))
 
 
 def test_a_plate_for_povray():

@@ -106,6 +106,7 @@ def _polyhedra(scene: Scene, needs: SceneNeeds) -> list[dict[str, Any]]:
             "planes": needs.planes[i],
             "redundant_planes": sorted(set(range(len(o.shape.planes))).difference(needs.planes[i])),
             "bounded": needs.bounded[i],
+            "plate": needs.plates[i],
         }
         for i, o in enumerate(scene.objects)
         if isinstance(o.shape, Polyhedron)
