@@ -75,7 +75,8 @@ def test_turned_normals_of_other_shapes(planes):
         [(0, 1, 0, 1)],
         PLATE,
         PLATE[:4],
-        turned(turned(CUBE, 0), 2),  # that is no longer one slip
+        [(0, 1, 1, 1), (-1, -1, 1, 0), (1, 1, 1, 0), (-1, 1, 0, 0), (1, 0, 0, -3)],  # bounded by either of two turns
+        turned(turned(CUBE, 0), 2),  # two slips
         moved(CUBE[:5], 3),
     ],
 )

@@ -116,14 +116,19 @@ def test_an_endless_sheet(mi):
     assert np.abs(np.subtract(pictures[0], made.ambient)).max() > 0.1
 
 
-def test_the_sides_of_a_plate_get_the_same_numbers():
-    """Also where roundings have moved one of them."""
-    front = (1.0, 3.0, 2.0, -2.0)
-    back = tuple(-x * (1 + k * 2.0**-52) for k, x in zip((1, -1, 2, 1), (0.1, 0.3, 0.2, -0.2), strict=True))
+@pytest.mark.parametrize(
+    ("front", "back"),
+    [
+        ((1.0, 3.0, 2.0, -2.0), (-0.1, -0.3, -0.2, 0.2)),
+        # As far apart as the sides of a plate may be.
+        ((1.42, -1.99, 0.92, 1.28), (-1.4200000000000008, 1.989999999999999, -0.9199999999999996, -1.280000000000001)),
+    ],
+)
+def test_the_sides_of_a_plate_get_the_same_numbers(front, back):
     made = plate_scene((front, back), MATTE, ABOVE)
     assert scene_needs(made, SETTINGS).plates == ((0, 1), (), ())
-    shape = with_planes_shared(made).objects[0].shape
-    assert shape == Polyhedron((front, (-1.0, -3.0, -2.0, 2.0)))
+    a, b, c, d = front
+    assert with_planes_shared(made).objects[0].shape == Polyhedron((front, (-a, -b, -c, -d)))
 
 
 def test_the_mesh_of_a_plate_is_one_polygon():
@@ -157,5 +162,6 @@ def test_a_plate_for_povray():
 def test_a_plate_is_written_and_read_again():
     made = plate_scene(PLATE, MIRROR, ABOVE)
     assert parse_scene(write_scene(made)) == made
+    assert scene_needs(made, SETTINGS).bounded == (True, True, True)
     assert cutoff_bound(made, Settings()).bound < 1
     assert NativeRenderer().trace_pixel(made, SETTINGS, 40, 30)["rays"][0]["hit"]["plane"] == 2
