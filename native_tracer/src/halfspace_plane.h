@@ -20,9 +20,9 @@ namespace whitted::halfspaces {
 
 using Real = long double;
 
-inline constexpr Real rounding = 16 * std::numeric_limits<double>::epsilon();  // 2^-48: of the coefficients
+inline constexpr Real rounding = 16 * std::numeric_limits<double>::epsilon();      // 2^-48: of the coefficients
 inline constexpr Real few_roundings = 4 * std::numeric_limits<double>::epsilon();  // as in converter/scene/coplanar.py
-inline constexpr Real noise = 8 * std::numeric_limits<Real>::epsilon();        // of the arithmetic here
+inline constexpr Real noise = 8 * std::numeric_limits<Real>::epsilon();            // of the arithmetic here
 
 struct Vec {
     Real x = 0, y = 0, z = 0;

@@ -22,7 +22,8 @@ inline bool touch(const Plane& one, const Plane& other) {
            std::abs(one.offset + other.offset) <= few_roundings * std::abs(one.offset);
 }
 
-// What the planes leave of plane `front`, as far as `far` from its point nearest the origin; empty if that has no width.
+// What the planes leave of plane `front`, as far as `far` from its point nearest the origin; empty if that has no
+// width.
 inline Face plate_face(const std::vector<Plane>& planes, int front, Real far) {
     Face face(planes, front, far);
     for (std::size_t k = 0; k < planes.size(); ++k) {
