@@ -15,14 +15,17 @@ HalfSpace = Sequence[float]
 
 
 class PolyhedronFacts(NamedTuple):
-    """What is known of an intersection of half-spaces. Without a volume only `conflict` means anything.
+    """What is known of an intersection of half-spaces. Of one that is neither a body nor a plate, `conflict` alone.
 
     A face narrower than 2^-48 of its distance from the origin counts as none, and a body thinner than that as having
-    no volume: the rounding of the coefficients, 2^-53 each, may have made it or unmade it.
+    no volume: the rounding of the coefficients, 2^-53 each, may have made it or unmade it. Planes touch if they differ
+    by no more than 2^-50, four times the rounding of a coefficient of 1.
     """
 
     solid: bool
     """It has a volume."""
+    plate: tuple[int, ...]
+    """If it has none, but a face: the two planes that touch there, and face away from each other. Otherwise none."""
     bounded: bool
     """It ends within 2^24 times the largest distance of a plane from the origin."""
     kept: tuple[int, ...]
@@ -33,9 +36,16 @@ class PolyhedronFacts(NamedTuple):
     high: Vector
     """Corners of the box around the vertices; for a face without vertices, around its point nearest the origin."""
     inside: Vector
-    """A point well inside."""
+    """A point well inside, of a plate well inside its face."""
     conflict: tuple[int, ...]
-    """If there is no volume: two to four planes that leave none by themselves, none of which can be spared."""
+    """If there is no volume and no plate: two to four planes that leave no volume by themselves, none of which can be
+    spared.
+    """
+
+    @property
+    def drawn(self) -> bool:
+        """Whether rays may hit it: it is a body or a plate."""
+        return self.solid or bool(self.plate)
 
 
 class Face(NamedTuple):
@@ -65,7 +75,8 @@ def polyhedron_facts(polyhedra: Iterable[Sequence[HalfSpace]]) -> list[Polyhedro
 
 
 def polyhedron_faces(planes: Sequence[HalfSpace]) -> list[Face]:
-    """The face of each half-space of one polyhedron; an empty list if that has no volume or no bounds.
+    """The face of each half-space of one polyhedron, of a plate that of its first plane alone; an empty list if it has
+    no bounds, or neither a volume nor a face.
 
     Raises:
         ValueError: a normal is zero, or a number is not finite.

@@ -190,7 +190,7 @@ def test_what_rounding_may_have_made_has_no_volume(scale):
     ("planes", "conflict"),
     [
         ([*CUBE, (0, -1, 0, 3)], (2, 6)),
-        ([(1, 0, 0, 0), (-2, 0, 0, 0)], (0, 1)),
+        ([(1, 0, 0, 0), (-2, 0, 0, 0), (0, 3, 0, 0), (0, -1, 0, 0)], (0, 1)),  # a line
         ([(1, 1, 0, 1), (0, 0, 1, 0), (-1, 0, 0, 0), (0, -1, 0, 0)], (0, 2, 3)),
         ([(0, 0, 1, -5), (1, 1, 1, 1), (-1, 0, 0, 0), (0, -1, 0, 0), (0, 0, -1, 0)], (1, 2, 3, 4)),
         ([*CUBE, *[(x, y, z, 1) for x, y, z, _ in OCTAHEDRON]], None),
@@ -206,20 +206,74 @@ def test_conflict(planes, conflict):
     some = [planes[k] for k in facts.conflict]
     assert 2 <= len(some) <= 4
     assert not facts_of(some).solid
+    assert not facts.drawn
     assert all(facts_of(rest).solid for rest in combinations(some, len(some) - 1))
 
 
 def test_check_geometry(small_scene):
     assert check_geometry(small_scene) == []
     nothing = Object(0, 0, Polyhedron(((1.0, 0.0, 0.0, 1.0), (-1.0, 0.0, 0.0, 0.0))), line=12)
-    flat = Object(0, 0, Polyhedron(((1.0, 0.0, 0.0, -1.0), (-2.0, 0.0, 0.0, 2.0))), line=15)
+    touching = ((1.0, 0.0, 0.0, -1.0), (-2.0, 0.0, 0.0, 2.0))
+    plate = Object(0, 0, Polyhedron(touching), line=14)
+    rod = Object(0, 0, Polyhedron((*touching, (0.0, 1.0, 0.0, 0.0), (0.0, -1.0, 0.0, 0.0))), line=15)
     ball = Object(0, 0, Sphere((0.0, 0.0, 0.0), 1.0))
-    scene = replace(small_scene, objects=(nothing, ball, flat), file=Path("a.in"))
+    scene = replace(small_scene, objects=(nothing, ball, plate, rod), file=Path("a.in"))
     facts = scene_facts(scene)
     assert facts[1] is None
-    empty, touching = check_geometry(scene, facts)
+    empty, no_face = check_geometry(scene, facts)
     assert str(empty).startswith("a.in:12:1: object 0 is nothing: its planes 0 (1 0 0 1) and 1 (-1 0 0 0) exclude")
-    assert (touching.line, "touch" in touching.message) == (15, True)
+    assert (no_face.line, "touch, and leave neither a volume nor a face" in no_face.message) == (15, True)
+
+
+# ---- Plates without thickness ----------------------------------------------------------------------------------------
+
+PLATE: list[Plane] = [(1, 0, 0, -1), (-1, 0, 0, -1), (0, 1, 0, 0), (0, -1, 0, 0), (0, 0, 1, -1), (0, 0, -1, -1)]
+
+
+@pytest.mark.parametrize("seed", range(20))
+@pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
+def test_a_plate_is_a_face_seen_from_both_sides(seed, scale):
+    for planes in (PLATE, moved(PLATE, seed, scale, seed % 3 * 10.0)):
+        facts = facts_of(planes)
+        assert (facts.solid, facts.plate, facts.drawn, facts.bounded) == (False, (2, 3), True, True)
+        assert (facts.kept, facts.redundant, facts.conflict) == ((0, 1, 2, 3, 4, 5), (), ())
+        faces = polyhedron_faces(planes)
+        assert [len(face.neighbors) for face in faces] == [0, 0, 4, 0, 0, 0]
+        assert sorted(faces[2].neighbors) == [0, 1, 4, 5]
+        assert faces[2].area == pytest.approx(4 * (scale if planes is not PLATE else 1.0) ** 2)
+    facts = facts_of(PLATE)
+    assert (facts.low, facts.high, facts.inside) == ((-1, 0, -1), (1, 0, 1), (0, 0, 0))
+
+
+@pytest.mark.parametrize(
+    ("extra", "redundant"),
+    [
+        ((1, 0, 0, -2), 6),  # is farther away
+        ((1, 0, 0, -0.5), 0),  # is nearer
+        ((0, 2, 0, 0), 6),  # repeats a side
+        ((0, 1, 0, -1), 6),  # is above it
+        ((1, 0, 1, -2), 6),  # touches a corner
+        ((3, 1, 0, -3), 6),  # meets it where plane 0 does
+    ],
+)
+def test_planes_that_do_not_bound_a_plate_are_redundant(extra, redundant):
+    facts = facts_of([*PLATE, extra])
+    assert (facts.plate, facts.redundant) == ((2, 3), (redundant,))
+
+
+def test_a_plate_without_bounds():
+    sheet = facts_of([(0, 1, 0, -3), (0, -2, 0, 6)])
+    assert (sheet.plate, sheet.bounded, sheet.low, sheet.high) == ((0, 1), False, (0, 3, 0), (0, 3, 0))
+    strip = facts_of([*PLATE[:4]])
+    assert (strip.plate, strip.bounded, strip.kept) == ((2, 3), False, (0, 1, 2, 3))
+    assert -1 < strip.inside[0] < 1
+
+
+@pytest.mark.parametrize("gap", [2e-15, 1e-14, 1e-9])
+def test_planes_that_exclude_each_other_by_a_hair_are_no_plate(gap):
+    assert facts_of([(1, 0, 0, -1), (-1, 0, 0, 1)]).plate == (0, 1)
+    assert facts_of([(1, 0, 0, -1), (-1, 0, 0, 1 + gap / 8)]).plate == ((0, 1) if gap < 3e-15 else ())
+    assert not facts_of([(1, 0, 0, -1), (-1, 0, 0, 1 + gap)]).drawn
 
 
 # ---- Against exact arithmetic ----------------------------------------------------------------------------------------
@@ -227,21 +281,20 @@ def test_check_geometry(small_scene):
 Point = tuple[Fraction, Fraction, Fraction]
 
 
-def exact(planes: Sequence[Plane]) -> tuple[bool, tuple[int, ...], bool]:
-    """Whether a body has a volume, its planes with a face, and whether it is bounded, by trying all vertices."""
+def exact(planes: Sequence[Plane]) -> tuple[int, tuple[int, ...], bool]:
+    """The body's dimension, its planes with a face, and whether it is bounded, by trying all vertices."""
     far = 10**9
     own = [tuple(map(Fraction, p)) for p in planes]
     box = [(*(sign * (i == j) for j in range(3)), -far) for i in range(3) for sign in (1, -1)]
     rows = own + [tuple(map(Fraction, p)) for p in box]
     points = {p for three in combinations(rows, 3) if (p := _meet(*three)) and all(_side(q, p) <= 0 for q in rows)}
-    if _dimension(points) < 3:
-        return False, (), False
+    dimension = _dimension(points)
     kept: dict[Plane, int] = {}
     for k, plane in enumerate(own):
         largest = max(map(abs, plane[:3]))
         if _dimension({p for p in points if _side(plane, p) == 0}) == 2:
             kept.setdefault(tuple(x / largest for x in plane), k)
-    return True, tuple(kept.values()), all(abs(x) < far for p in points for x in p)
+    return dimension, tuple(kept.values()), all(abs(x) < far for p in points for x in p)
 
 
 def _side(plane, point) -> Fraction:
@@ -291,11 +344,13 @@ def integer_planes(draw) -> list[Plane]:
 @settings(max_examples=100, deadline=None)
 @given(integer_planes(), st.integers(0, 1000), st.sampled_from([1e-6, 1.0, 1e6]))
 def test_agrees_with_exact_arithmetic(planes, seed, scale):
-    solid, kept, bounded = exact(planes)
+    dimension, kept, bounded = exact(planes)
     for body in (planes, moved(planes, seed, scale)):
         facts = facts_of(body)
-        assert facts.solid == solid
-        if solid:
+        assert (facts.solid, bool(facts.plate)) == (dimension == 3, dimension == 2)
+        if facts.plate:
+            assert facts.bounded == bounded
+        if facts.solid:
             assert (facts.kept, facts.bounded) == (kept, bounded)
             assert all(_side(map(Fraction, p), map(Fraction, facts.inside)) < 0 for p in body)
 

@@ -14,7 +14,7 @@ from strategies import scenes
 from converter.scene import geometry
 from converter.scene.model import Camera, Finish, Light, Object, Polyhedron, Scene, Solid, Sphere
 from converter.scene.needs import MAX_DEPTH, MAX_DEPTH_BRANCHING, eta, is_index, scene_needs
-from converter.scene.notices import scene_notices
+from converter.scene.notices import ior_notices, scene_notices
 from converter.scene.parser import load_scene, parse_scene
 from converter.scene.settings import IorReading, Settings
 from converter.scene.writer import write_scene
@@ -165,14 +165,15 @@ def test_needs_agree_with_the_scene(scene: Scene, reading: IorReading) -> None:
 
 def test_an_ior_above_1_is_told_with_its_place() -> None:
     scene = parse_scene(write_scene(scene_of(MATTE, GLASS, BOTH)), Path("glass.in"))
-    (notice,) = scene_notices(scene, Settings())
+    (notice,) = ior_notices(scene, Settings())
     line = write_scene(scene).splitlines().index("0 0 0 1 0 0.9 1.5") + 1
     assert notice.startswith(f"glass.in:{line}: finish 1: ior 1.5 is above 1")
     assert "--ior ratio" in notice
+    assert scene_notices(scene, Settings()) == []
 
 
 def test_a_scene_made_by_a_program_has_notices_too() -> None:
-    (notice,) = scene_notices(scene_of(GLASS), Settings())
+    (notice,) = ior_notices(scene_of(GLASS), Settings())
     assert notice.startswith("scene: finish 0: ior 1.5 ")
 
 
@@ -188,7 +189,7 @@ def test_a_scene_made_by_a_program_has_notices_too() -> None:
     ids=["ratio asked for", "index asked for", "a ratio", "nothing transmitted", "not used"],
 )
 def test_nothing_to_tell(scene: Scene, settings: Settings) -> None:
-    assert scene_notices(scene, settings) == []
+    assert ior_notices(scene, settings) == []
 
 
 def test_facts_of_polyhedra_are_worked_out_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -260,8 +260,8 @@ def test_lines_of_the_file_are_named(tmp_path, capsys):
     told = capsys.readouterr().err
     assert f"warning: {file}:7: light 1 is 1e-05 radii from the surface of object 0" in told
     assert f"warning: {file}:11: finish 0 has an alpha of 20000" in told
-    assert main(["inspect", str(file)]) == 0
-    assert f"warning: {file}:7: light 1" in capsys.readouterr().out
+    assert main(["inspect", str(file), "--json", "-"]) == 0
+    assert f"{file}:7: light 1 is 1e-05 radii" in capsys.readouterr().out
 
 
 # ---- The study

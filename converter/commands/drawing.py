@@ -44,6 +44,11 @@ def draw(
     started = time.perf_counter()
     scene = load_with_notices(scene_file, settings, quiet, method)
     check_apart(out, (pigment.file for pigment in scene.pigments if isinstance(pigment, Texmap)))
+    if not quiet:
+        from converter.commands.readings import ior_notices_that_show
+
+        for notice in ior_notices_that_show(scene, settings):
+            say(f"note: {notice}")
     read = time.perf_counter()
     with ProgressBar(out.name, quiet) as progress:
         try:

@@ -13,6 +13,10 @@ from converter.descriptors import STANDARD_OUTPUT
 
 MOST_ROWS = 20
 """Rows of a table; a scene may have thousands of polyhedra."""
+DEFAULT = "native"
+"""The method that stands for all that compute in double precision, as those do that draw where nobody chooses."""
+MOST_LEVELS = 8
+"""Levels of 255 up to which a bound is told: beyond, it says less of the picture than of how often rays may split."""
 COEFFICIENTS = ("ka", "kd", "ks", "alpha", "kr", "kt", "ior")
 
 
@@ -102,9 +106,10 @@ def _print(found: dict[str, Any]) -> None:
     )
     for notice in found["notices"]:
         print(f"\nnote: {notice}")
-    for warnings in found["warnings"].values():
-        for warning in warnings:
-            print(f"\nwarning: {warning}")
+    for warning in found["warnings"].get(DEFAULT, ()):
+        print(f"\nwarning: {warning}")
+    if others := [name for name in found["warnings"] if name != DEFAULT]:
+        print(f"\nnote: other methods are known to fail here: {', '.join(others)} (--json tells at what)")
 
 
 def _overview(found: dict[str, Any]) -> list[tuple[str, str]]:
@@ -138,13 +143,15 @@ def _overview(found: dict[str, Any]) -> list[tuple[str, str]]:
 
 
 def _cutoff(found: dict[str, Any]) -> str:
-    """E.g. "1/512: no channel is off by more than 0.0041 (1.04 of 255 levels)"."""
+    """E.g. "1/512: no channel is off by more than 0.0041 (1.04 of 255 levels)"; no number where it would be useless."""
     cutoff, bound = found["cutoff"], found["bound"]
     share = f"1/{1 / cutoff:.0f}" if cutoff and (1 / cutoff).is_integer() else f"{cutoff:g}"
     if found["unbounded_by"]:
         return f"{share}: no telling how far channels are off, for {found['unbounded_by']}"
     if bound == 0:
         return f"{share}: drops no ray"
+    if 255 * bound > MOST_LEVELS:
+        return f"{share}: the bound is loose here; whitted compare --reference native-cutoff-0 measures"
     return f"{share}: no channel is off by more than {_rounded_up(bound)} ({_rounded_up(255 * bound)} of 255 levels)"
 
 

@@ -7,7 +7,7 @@ from typing import Any
 from converter.scene.cutoff import cutoff_bound
 from converter.scene.model import Checker, Finish, Pigment, Polyhedron, Scene, Solid
 from converter.scene.needs import SceneNeeds, is_index, scene_needs
-from converter.scene.notices import scene_notices
+from converter.scene.notices import ior_notices, scene_notices
 from converter.scene.settings import Settings
 
 
@@ -45,7 +45,7 @@ def inspect_scene(scene: Scene, settings: Settings) -> dict[str, Any]:
             "max_depth": needs.max_depth,
         },
         "cutoff": asdict(cutoff_bound(scene, settings)),
-        "notices": scene_notices(scene, settings),
+        "notices": [*scene_notices(scene, settings), *ior_notices(scene, settings)],
         "warnings": _warnings(scene, settings),
     }
 
@@ -106,6 +106,7 @@ def _polyhedra(scene: Scene, needs: SceneNeeds) -> list[dict[str, Any]]:
             "planes": needs.planes[i],
             "redundant_planes": sorted(set(range(len(o.shape.planes))).difference(needs.planes[i])),
             "bounded": needs.bounded[i],
+            "plate": needs.plates[i],
         }
         for i, o in enumerate(scene.objects)
         if isinstance(o.shape, Polyhedron)

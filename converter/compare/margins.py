@@ -6,12 +6,14 @@ ray crosses at distances t and u change places, or begin or cease to have a way 
 """
 
 import math
+from functools import lru_cache
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from converter.scene.model import Checker, Pigment, Shape, Solid, Sphere, Texmap
+from converter.scene.model import Checker, Pigment, Polyhedron, Shape, Solid, Sphere, Texmap
+from native_tracer.halfspaces import polyhedron_facts
 
 Floats = NDArray[np.float64]
 INFINITE = math.inf
@@ -119,8 +121,17 @@ def _nearest(ball: Sphere, origin: Floats, direction: Floats) -> tuple[float, fl
 def _planes(shape: Shape, origin: Floats, direction: Floats) -> tuple[Floats, Floats, Floats]:
     """For each plane where a line crosses it (infinite or NaN: nowhere), the cosine, and the origin's height above."""
     assert not isinstance(shape, Sphere)
-    planes = np.array(shape.planes)
-    planes = planes / np.linalg.norm(planes[:, :3], axis=1)[:, None]
+    planes = _unit_planes(shape)
     cosine, height = planes[:, :3] @ direction, planes[:, :3] @ origin + planes[:, 3]
     with np.errstate(divide="ignore", invalid="ignore"):
         return -height / cosine, cosine, height
+
+
+@lru_cache(maxsize=64)
+def _unit_planes(polyhedron: Polyhedron) -> Floats:
+    """(n, 4), with normals of length 1; of a plate without thickness, whose sides are at one place, the first one."""
+    planes = np.array(polyhedron.planes)
+    if back := polyhedron_facts([polyhedron.planes])[0].plate[1:]:
+        planes = np.delete(planes, back, axis=0)
+    unit: Floats = planes / np.linalg.norm(planes[:, :3], axis=1)[:, None]
+    return unit

@@ -63,11 +63,18 @@ def _thin_glass(s: Situation, limit: float) -> Iterator[Finding]:
     shares = np.full(len(s.scene.objects), np.inf)
     for i, o in enumerate(s.scene.objects):
         clear = isinstance(o.shape, Polyhedron) and s.finish(i).kt > 0
-        if clear and s.needs.bounded[i] and len(s.needs.planes[i]) <= MOST_PLANES:
+        if clear and s.needs.bounded[i] and not s.needs.plates[i] and len(s.needs.planes[i]) <= MOST_PLANES:
             shares[i] = _thickness(s, i)
     for i, more in worst(shares, limit):
         text = f"is transparent and {shares[i]:.2g} thick, next to its coordinates and the camera's"
         yield _object(s, i, f"{text} (less than {limit:.2g}{more})")
+
+
+def _clear_plates(s: Situation, _: float) -> Iterator[Finding]:
+    """Glass without thickness: rays that start off its surface start beyond its other side, too."""
+    for i, plate in enumerate(s.needs.plates):
+        if plate and s.finish(i).kt > 0 and s.needs.refracts:
+            yield _object(s, i, "is transparent and has no thickness")
 
 
 def _thickness(s: Situation, index: int) -> float:
@@ -100,4 +107,5 @@ REGIONS = (
     ),
     Region(("size",), {"float": 1e-17, "mesh": 1e-13}, _small),
     Region(("slivers",), {"float": 2e-6, "mesh": 2e-5}, _thin_glass),
+    Region(("slivers",), dict.fromkeys(("mesh", "offset", "ulp"), 0.0), _clear_plates),
 )

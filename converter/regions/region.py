@@ -7,6 +7,7 @@ import numpy as np
 
 from converter.regions.situation import Floats, Situation
 from converter.renderers.methods import Arithmetic
+from converter.scene.errors import so_are
 
 
 @dataclass(frozen=True, slots=True)
@@ -39,6 +40,4 @@ def worst(shares: Floats, limit: float) -> Iterator[tuple[int, str]]:
     """The index of the smallest share, if that is below a limit, and a word on how many others are."""
     beyond = np.flatnonzero(shares < limit)
     if len(beyond):
-        others = len(beyond) - 1
-        more = f"; so {'is one other' if others == 1 else f'are {others} others'}" if others else ""
-        yield int(beyond[np.argmin(shares[beyond])]), more
+        yield int(beyond[np.argmin(shares[beyond])]), so_are(len(beyond) - 1)

@@ -3,7 +3,8 @@
 A box on a box, a floor made of slabs: their faces share planes, which one of them writes as `1 3 2 -2` and another as
 `-10 -30 -20 20`. Normals of length 1 made of those differ in their last digits; which of the two faces is nearer would
 then be decided by rounding, another way for every ray. So such planes get the same numbers before anything is computed
-from them: distances tie, and of objects at the same distance the first of the file counts.
+from them: distances tie, and of objects at the same distance the first of the file counts. Likewise the two planes of a
+plate without thickness: a ray then enters it exactly where it leaves.
 """
 
 from collections.abc import Iterator
@@ -26,8 +27,10 @@ _Place = tuple[int, int]
 def with_planes_shared(scene: Scene) -> Scene:
     """`scene`, where planes that are the same but for a factor and roundings are as the first of them is written.
 
-    The factor may be negative: bodies that lie on each other share a plane with opposite normals.
+    The factor may be negative: bodies that lie on each other share a plane with opposite normals. So do the sides of a
+    plate, whatever roundings were allowed for when it was found to be one.
     """
+    scene = _with_planes(scene, _plate_backs(scene))
     changed: dict[_Place, Plane] = {}
     for cluster in _clusters(scene):
         heads: list[Plane] = []
@@ -38,6 +41,11 @@ def with_planes_shared(scene: Scene) -> Scene:
                 heads.append(plane)
             elif shared != plane:
                 changed[place] = shared
+    return _with_planes(scene, changed)
+
+
+def _with_planes(scene: Scene, changed: dict[_Place, Plane]) -> Scene:
+    """`scene` with some planes changed; itself if none is."""
     if not changed:
         return scene
     objects = list(scene.objects)
@@ -47,6 +55,22 @@ def with_planes_shared(scene: Scene) -> Scene:
         planes = tuple(changed.get((i, k), plane) for k, plane in enumerate(shape.planes))
         objects[i] = replace(objects[i], shape=Polyhedron(planes))
     return replace(scene, objects=tuple(objects))
+
+
+def _plate_backs(scene: Scene) -> dict[_Place, Plane]:
+    """For the second side of each plate the first one, facing away, unless it is that already."""
+    if not any(isinstance(o.shape, Polyhedron) for o in scene.objects):
+        return {}
+    from converter.scene.geometry import scene_facts
+
+    found: dict[_Place, Plane] = {}
+    for i, fact in enumerate(scene_facts(scene)):
+        if fact is not None and fact.plate:
+            front, back = fact.plate
+            a, b, c, d = _plane(scene, (i, front))
+            if _plane(scene, (i, back)) != (-a, -b, -c, -d):
+                found[i, back] = (-a, -b, -c, -d)
+    return found
 
 
 def _clusters(scene: Scene) -> Iterator[list[_Place]]:

@@ -39,7 +39,8 @@ from typing import Any, NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from converter.scene.model import Checker, Color, Light, Object, Pigment, Scene, Solid, Sphere, Vector
+from converter.scene.attenuation import least_divisor
+from converter.scene.model import Checker, Color, Pigment, Scene, Solid
 from converter.scene.needs import SceneNeeds, depth_limit, scene_needs
 from converter.scene.settings import Settings
 
@@ -51,8 +52,6 @@ MOST_WEIGHTS = 512
 ROUNDING = 2.0**-20
 """Part of the brightest colour by which two pictures may differ because their pixels are rounded to single precision,
 and by which a highlight may exceed 1."""
-SLACK = 2.0**-40
-"""Part of a distance that its rounding, and a hit point's, may amount to."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -135,7 +134,7 @@ def _local_colors(scene: Scene, needs: SceneNeeds) -> tuple[Floats, str]:
         finish = scene.finishes[o.finish]
         red = green = blue = 0.0
         for k, light in enumerate(scene.lights if finish.kd > 0 or finish.ks > 0 else (), start=1):
-            divisor = _least_divisor(light, o, needs, i)
+            divisor = least_divisor(light, o, needs, i)
             if divisor == 0:  # a black light is no better: 0 / 0 is no colour
                 line = f" (line {o.line})" if o.line else ""
                 unbounded_by = unbounded_by or f"light {k}'s attenuation may be 0 on object {i}{line}"
@@ -168,46 +167,6 @@ def _largest(pigment: Pigment) -> Floats:
         colors = [texels.min(axis=(0, 1)), texels.max(axis=(0, 1))]
     largest: Floats = np.abs(np.array(colors, dtype=np.float64)).max(axis=0)
     return largest
-
-
-def _distances(point: Vector, o: Object, needs: SceneNeeds, index: int) -> tuple[float, float]:
-    """Bounds of the distance between a point and the points of an object's surface."""
-    size = max(map(abs, point))
-    if isinstance(o.shape, Sphere):
-        apart = math.dist(point, o.shape.center)
-        nearest, farthest = abs(apart - o.shape.radius), apart + o.shape.radius
-        size += apart
-    else:
-        excesses = []
-        for k in needs.planes[index]:
-            a, b, c, d = o.shape.planes[k]
-            length = math.hypot(a, b, c)
-            excesses.append((a * point[0] + b * point[1] + c * point[2] + d) / length)
-            size = max(size, abs(d) / length)
-        nearest = abs(max(excesses))
-        low, high = needs.boxes[index]
-        corner = (max(abs(x - p), abs(y - p)) for p, x, y in zip(point, low, high, strict=True))
-        farthest = math.hypot(*corner) if needs.bounded[index] else math.inf
-    slack = SLACK * size
-    return max(0.0, nearest - slack), farthest + slack
-
-
-def _least_divisor(light: Light, o: Object, needs: SceneNeeds, index: int) -> float:
-    """The smallest |a + b d + c d^2| at the distances that an object's surface has from a light; 0 if one is a root."""
-    a, b, c = light.attenuation
-    if b == c == 0:
-        return abs(a)
-    nearest, farthest = _distances(light.position, o, needs, index)
-    values = [a + nearest * (b + nearest * c)]
-    if math.isfinite(farthest):
-        values.append(a + farthest * (b + farthest * c))
-    else:
-        values.append(math.copysign(math.inf, c or b))
-    if c and nearest < -b / (2 * c) < farthest:
-        values.append(a - b * b / (4 * c))
-    if all(value > 0 for value in values) or all(value < 0 for value in values):
-        return min(map(abs, values))
-    return 0.0
 
 
 # ---- Which rays are dropped ----------------------------------------------------------------------------------------

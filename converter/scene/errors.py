@@ -16,6 +16,11 @@ def place(file: Path | None, line: int) -> str:
     return f"{file or 'scene'}{f':{line}' if line else ''}"
 
 
+def so_are(others: int) -> str:
+    """E.g. "; so are 3 others", after a sentence about the first; nothing if there are none."""
+    return f"; so {'is one other' if others == 1 else f'are {others} others'}" if others else ""
+
+
 @dataclass(frozen=True, slots=True)
 class Problem:
     """One thing that is wrong, and where.

@@ -35,7 +35,7 @@ def _forget(scene: ReferenceType[Scene]) -> None:
 
 
 def check_geometry(scene: Scene, facts: Sequence[PolyhedronFacts | None] | None = None) -> list[Problem]:
-    """What is wrong with the shapes of `scene`: half-spaces that exclude one another, or leave something flat.
+    """What is wrong with the shapes of `scene`: half-spaces that exclude one another, or leave no face.
 
     Args:
         scene: any scene.
@@ -46,7 +46,7 @@ def check_geometry(scene: Scene, facts: Sequence[PolyhedronFacts | None] | None 
     return [
         Problem(scene.file, o.line, 1, f"object {i} is nothing: {_why_nothing(o.shape.planes, fact.conflict)}")
         for i, (o, fact) in enumerate(zip(scene.objects, known, strict=True))
-        if isinstance(o.shape, Polyhedron) and fact is not None and not fact.solid
+        if isinstance(o.shape, Polyhedron) and fact is not None and not fact.drawn
     ]
 
 
@@ -59,4 +59,4 @@ def _why_nothing(planes: Sequence[Plane], conflict: Sequence[int]) -> str:
     # Two planes without a volume between them are parallel, and face away from each other.
     distances = [planes[k][3] / hypot(*planes[k][:3]) for k in conflict]
     apart = sum(distances) > 1e-12 * max(map(abs, distances))
-    return f"its planes {listed} {'exclude each other' if apart else 'touch, with no volume between them'}"
+    return f"its planes {listed} {'exclude each other' if apart else 'touch, and leave neither a volume nor a face'}"

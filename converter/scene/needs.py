@@ -33,7 +33,8 @@ class SceneNeeds:
         max_depth: bounces to follow after the primary ray.
         background: linear RGB of rays that hit nothing.
         planes: for each object the indices of the planes that have a face, ascending; for a sphere none, and all for a
-            polyhedron without a volume.
+            polyhedron that is neither a body nor a plate.
+        plates: for each object the two planes between which it is a plate without thickness; for others none.
         boxes: for each object the lower and the upper corner of the box around it, of an unbounded one around its
             vertices (where a face has none, around its point nearest the origin).
         bounded: for each object whether it is, as far as is known.
@@ -51,6 +52,7 @@ class SceneNeeds:
     max_depth: int
     background: Color
     planes: tuple[tuple[int, ...], ...]
+    plates: tuple[tuple[int, ...], ...]
     boxes: tuple[tuple[Vector, Vector], ...]
     bounded: tuple[bool, ...]
 
@@ -83,8 +85,9 @@ def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
         max_depth=max_depth,
         background=scene.ambient if settings.background is None else settings.background,
         planes=tuple(_planes(o.shape, f) for o, f in zip(scene.objects, facts, strict=True)),
+        plates=tuple(f.plate if f else () for f in facts),
         boxes=tuple((f.low, f.high) if f else _box(o.shape) for o, f in zip(scene.objects, facts, strict=True)),
-        bounded=tuple(f is None or (f.solid and f.bounded) for f in facts),
+        bounded=tuple(f is None or (f.drawn and f.bounded) for f in facts),
     )
 
 
@@ -92,8 +95,8 @@ def _planes(shape: Shape, facts: "PolyhedronFacts | None") -> tuple[int, ...]:
     if facts is None:
         return ()
     assert isinstance(shape, Polyhedron)
-    # Of what is too thin to have a volume no face is known; no scene file may hold it, but a program's scene may.
-    return facts.kept if facts.solid else tuple(range(len(shape.planes)))
+    # Of what has neither a volume nor a face nothing is known; no scene file may hold it, but a program's scene may.
+    return facts.kept if facts.drawn else tuple(range(len(shape.planes)))
 
 
 def _box(sphere: Shape) -> tuple[Vector, Vector]:

@@ -1,22 +1,48 @@
 """What a scene's reader should be told although nothing is wrong."""
 
 from converter.scene.enclosure import enclosure_notices
-from converter.scene.errors import place
-from converter.scene.model import Scene
-from converter.scene.needs import is_index
+from converter.scene.errors import place, so_are
+from converter.scene.model import Polyhedron, Scene
+from converter.scene.needs import is_index, scene_needs
+from converter.scene.oddities import oddity_notices
 from converter.scene.settings import Settings
 
 
 def scene_notices(scene: Scene, settings: Settings) -> list[str]:
-    """One line for each reading of the scene that is a choice: `file:line: finish 2: ior 1.45 is above 1, ...`, and for
-    each of its `enclosure_notices`.
+    """One line for each thing: plates without thickness, what is shut in or out, and what is surely not meant.
+
+    `ior_notices` are not among them: they are for whoever looks into a scene, or draws it without `--ior`.
     """
-    notices = []
-    for k in sorted({o.finish for o in scene.objects}):
-        finish = scene.finishes[k]
-        if settings.ior == "auto" and finish.kt > 0 and is_index(finish, settings.ior):
-            line = scene.finish_lines[k] if k < len(scene.finish_lines) else 0
-            where = f"{place(scene.file, line)}: finish {k}"
-            reading = "so it is read as the material's own index, n2/n1; --ior ratio reads it as n1/n2"
-            notices.append(f"{where}: ior {finish.ior:g} is above 1, {reading}")
-    return [*notices, *enclosure_notices(scene, settings)]
+    return [
+        *_plate_notices(scene, settings),
+        *enclosure_notices(scene, settings),
+        *oddity_notices(scene, settings),
+    ]
+
+
+def ior_notices(scene: Scene, settings: Settings) -> list[str]:
+    """One line if an `ior` that something shows is read as n2/n1 for no other reason than that it is above 1."""
+    used = sorted({o.finish for o in scene.objects})
+    found = [k for k in used if scene.finishes[k].kt > 0 and is_index(scene.finishes[k], settings.ior)]
+    if settings.ior != "auto" or not found:
+        return []
+    k = found[0]
+    line = scene.finish_lines[k] if k < len(scene.finish_lines) else 0
+    reading = "and read as the material's own index, n2/n1 (--ior ratio reads n1/n2)"
+    where = f"{place(scene.file, line)}: finish {k}"
+    return [f"{where}: ior {scene.finishes[k].ior:g} is above 1 {reading}{so_are(len(found) - 1)}"]
+
+
+def _plate_notices(scene: Scene, settings: Settings) -> list[str]:
+    """One line for all plates without thickness, at the first."""
+    plates = scene_needs(scene, settings).plates
+    found = [i for i, plate in enumerate(plates) if plate]
+    if not found:
+        return []
+    i = found[0]
+    shape = scene.objects[i].shape
+    assert isinstance(shape, Polyhedron)
+    sides = " and ".join(f"{k} ({' '.join(f'{x:.12g}' for x in shape.planes[k])})" for k in plates[i])
+    where = place(scene.file, scene.objects[i].line)
+    what = f"object {i} is a plate without thickness, seen from both sides: its planes {sides} touch"
+    return [f"{where}: {what}{so_are(len(found) - 1)}"]

@@ -87,7 +87,8 @@ def polyhedron_mesh(planes: Sequence[HalfSpace], bounds: Box, name: str = "polyh
     """Make a mesh of an intersection of half-spaces.
 
     What reaches out of `bounds` is cut off there, and the mesh left open: the box is not in the scene. Only what lies
-    outside altogether is given a larger box, since Mitsuba takes no mesh without triangles.
+    outside altogether is given a larger box, since Mitsuba takes no mesh without triangles. A plate without thickness
+    is one polygon, which has two sides: that of its first plane.
 
     Args:
         planes: (n, 4), half-spaces a x + b y + c z + d <= 0.
@@ -95,7 +96,8 @@ def polyhedron_mesh(planes: Sequence[HalfSpace], bounds: Box, name: str = "polyh
         name: what messages call the polyhedron.
 
     Raises:
-        PolyhedronError: there is no volume, no method gives a closed surface, or float32 numbers do not hold it.
+        PolyhedronError: there is neither a volume nor a face, no method gives a closed surface, or float32 numbers do
+            not hold it.
 
     """
     try:
@@ -137,9 +139,9 @@ def _whole_mesh(planes: Sequence[HalfSpace], bounds: Box, name: str) -> Polyhedr
     kept: Sequence[int] = [k for k, face in enumerate(faces) if face.neighbors]
     if not _fit(faces, bounds):
         facts = polyhedron_facts([body])[0]
-        if not facts.solid:
+        if not facts.drawn:
             raise PolyhedronError(f"{name}: planes {_listed(facts.conflict)} leave no volume")
-        kept = facts.kept
+        kept = facts.plate[:1] or facts.kept
         for box in (bounds, _enlarged(bounds, facts)):
             closed = body + _box_planes(box)
             faces = polyhedron_faces(closed)
@@ -151,6 +153,8 @@ def _whole_mesh(planes: Sequence[HalfSpace], bounds: Box, name: str) -> Polyhedr
     if not SMALLEST < size < 4 * LARGEST:
         raise PolyhedronError(f"{name}: single precision, of which meshes are, has no numbers for a size of {size:.3g}")
     unit = _unit_planes(closed)
+    if len(only := [k for k, face in enumerate(faces) if face.neighbors]) == 1:
+        return _plate_mesh(unit, only[0], faces[only[0]])
     edges = _edges(faces)
     problems = []
     for method in METHODS:
@@ -278,6 +282,18 @@ def _mesh(planes: Long, rings: dict[int, Ring], count: int, faces: Sequence[Face
             face = _triangulated(ring)
             triangles += face
             owners += [k] * len(face)
+    return _from_triangles(planes, vertices, triangles, owners, method)
+
+
+def _plate_mesh(planes: Long, plane: int, face: Face) -> PolyhedronMesh:
+    """The only face of a plate."""
+    triangles = _triangulated(list(range(len(face.neighbors))))
+    return _from_triangles(planes, _points(face), triangles, [plane] * len(triangles), "polygons")
+
+
+def _from_triangles(
+    planes: Long, vertices: Floats, triangles: list[list[int]], owners: list[int], method: Method
+) -> PolyhedronMesh:
     used, indices = np.unique(np.reshape(np.array(triangles, dtype=np.int64), (-1, 3)), return_inverse=True)
     indices = indices.reshape(-1, 3)
     vertices = vertices[used]

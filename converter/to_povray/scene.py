@@ -155,6 +155,11 @@ def _objects(scene: Scene, needs: SceneNeeds, omissions: list[str]) -> str:
         pair = f"{_place('object', i, lines, i)} and {_place('object', j, lines, j)}"
         omissions.append(f"{pair} are transparent and overlap, so that rays are refracted by other ratios there")
 
+    for i in range(len(scene.objects)) if needs.refracts else ():
+        if needs.plates[i] and scene.finishes[scene.objects[i].finish].kt > 0:
+            place = _place("object", i, lines, i)
+            omissions.append(f"{place} is transparent and has no thickness: rays are refracted once there, not twice")
+
     def block(i: int, o: Object) -> str:
         texture = _texture(o.finish, o.pigment)
         return object_(f"Object_{i}", surface(o.shape, needs, i), texture, inner.get(i), needs.lit)

@@ -13,6 +13,10 @@ def surface(shape: Shape, needs: SceneNeeds, index: int) -> str:
     """The shape of the object `index`."""
     if isinstance(shape, Sphere):
         return f"sphere {{ {vector(shape.center)}, {number(shape.radius)} }}"
+    if plate := needs.plates[index]:
+        sides = "".join(f"\n    {_plane(shape.planes[k])}" for k in needs.planes[index] if k not in plate)
+        clipped = f"\n  clipped_by {{{sides}\n  }}" if sides else ""
+        return f"plane {{ {_numbers(shape.planes[plate[0]])}{clipped}\n}}"
     planes = [shape.planes[k] for k in needs.planes[index]]
     if len(planes) == 1:
         return _plane(planes[0])
@@ -50,9 +54,14 @@ def _open(shape: str) -> str:
 
 
 def _plane(plane: Plane) -> str:
+    return f"plane {{ {_numbers(plane)} }}"
+
+
+def _numbers(plane: Plane) -> str:
+    """A plane's unit normal, and its distance from the origin along it."""
     a, b, c, d = plane
     length = math.hypot(a, b, c)
-    return f"plane {{ {vector((a / length, b / length, c / length))}, {number(-d / length)} }}"
+    return f"{vector((a / length, b / length, c / length))}, {number(-d / length)}"
 
 
 def _box(corners: tuple[Sequence[float], Sequence[float]]) -> str:

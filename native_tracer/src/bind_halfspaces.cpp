@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "halfspace_conflict.h"
+#include "halfspace_plate.h"
 #include "halfspaces.h"
 #include "parallel.h"
 
@@ -60,21 +61,28 @@ struct Result {
     std::vector<int> conflict;
 };
 
-Result examine(const std::vector<Plane>& planes) {
-    std::vector<Face> faces;
+// Leaves the faces of all planes in `faces`; of a plate that of its first one alone.
+Result examine(const std::vector<Plane>& planes, std::vector<Face>& faces) {
     Result result{whitted::halfspaces::body_of(planes, faces), {}};
     if (!result.body.solid) {
         result.conflict = whitted::halfspaces::conflict_of(planes);
         result.body = {};
+        if (result.conflict.size() == 2) {
+            result.body = whitted::halfspaces::plate_of(planes, result.conflict, faces);
+        }
+        if (!result.body.plate.empty()) {
+            result.conflict.clear();
+        }
     }
     return result;
 }
 
 nb::tuple describe(const Result& result) {
     const Body& body = result.body;
-    return nb::make_tuple(body.solid, body.solid && body.bounded, nb::tuple(nb::cast(body.kept)),
-                          nb::tuple(nb::cast(body.redundant)), to_tuple(body.low), to_tuple(body.high),
-                          to_tuple(body.inside), nb::tuple(nb::cast(result.conflict)));
+    const bool known = body.solid || !body.plate.empty();
+    return nb::make_tuple(body.solid, nb::tuple(nb::cast(body.plate)), known && body.bounded,
+                          nb::tuple(nb::cast(body.kept)), nb::tuple(nb::cast(body.redundant)), to_tuple(body.low),
+                          to_tuple(body.high), to_tuple(body.inside), nb::tuple(nb::cast(result.conflict)));
 }
 
 nb::list bodies(const Coefficients& coefficients, const Offsets& offsets) {
@@ -92,7 +100,10 @@ nb::list bodies(const Coefficients& coefficients, const Offsets& offsets) {
     {
         const nb::gil_scoped_release others_may_run;
         constexpr std::size_t share = 256;  // small polyhedra, a few milliseconds
-        whitted::for_each_index(results.size(), share, [&](std::size_t i) { results[i] = examine(polyhedra[i]); });
+        whitted::for_each_index(results.size(), share, [&](std::size_t i) {
+            std::vector<Face> unused;
+            results[i] = examine(polyhedra[i], unused);
+        });
     }
     nb::list list;
     for (const Result& result : results) {
@@ -116,9 +127,21 @@ nb::tuple describe(const Face& face, const std::vector<int>& kept) {
 nb::list faces(const Coefficients& coefficients) {
     const std::vector<Plane> all = read_planes(coefficients, 0, count_planes(coefficients));
     std::vector<Face> faces;
-    const Body body = whitted::halfspaces::body_of(all, faces);
+    const Body body = examine(all, faces).body;
     nb::list list;
-    if (!body.solid || !body.bounded) {
+    if ((!body.solid && body.plate.empty()) || !body.bounded) {
+        return list;
+    }
+    const auto add_none = [&] {
+        for (std::size_t k = 0; k < all.size(); ++k) {
+            list.append(nb::make_tuple(nb::list(), nb::list(), 0.0));
+        }
+    };
+    if (!body.solid) {
+        std::vector<int> numbers(all.size());
+        std::iota(numbers.begin(), numbers.end(), 0);
+        add_none();
+        list[faces[0].index()] = describe(faces[0], numbers);
         return list;
     }
     std::vector<Plane> planes;
@@ -132,9 +155,7 @@ nb::list faces(const Coefficients& coefficients) {
             return list;  // it is those planes' roundings that bound the body
         }
     }
-    for (std::size_t k = 0; k < all.size(); ++k) {
-        list.append(nb::make_tuple(nb::list(), nb::list(), 0.0));
-    }
+    add_none();
     for (std::size_t k = 0; k < planes.size(); ++k) {
         list[static_cast<std::size_t>(body.kept[k])] = describe(faces[k], body.kept);
     }

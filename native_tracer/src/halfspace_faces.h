@@ -49,6 +49,9 @@ class Face {
         return std::all_of(edges().begin(), edges().end(), [](const auto& item) { return item.second.neighbor >= 0; });
     }
 
+    // Whether plane `other` is the same but for roundings, facing either way.
+    bool coincides_with(int other) const;
+
     // Whether anything of it lies outside of the half-space of plane `other`, or does not count beside it.
     bool affected_by(int other) const;
 
@@ -80,6 +83,9 @@ class Face {
     Vec at(Real x, Real y) const { return foot_ + x * u_ + y * v_; }
     HalfPlane trace_of(const Plane& cut) const;
     Real touch_of(const Plane& cut) const;
+    bool faces_as(const Plane& other) const { return dot(plane_.normal, other.normal) > 0; }
+    Real height_of_parallel(const Plane& other) const;
+    Real doubt_beside(const Plane& other) const;
     bool loses_to_parallel(const Plane& cut, int other) const;
     void find_ball();
 
@@ -121,14 +127,25 @@ inline bool nearly_parallel(const HalfPlane& trace) {
 // What a plane may take of this one for nothing but noise.
 inline Real Face::touch_of(const Plane& cut) const { return noise * (std::abs(plane_.offset) + std::abs(cut.offset)); }
 
+// How far this plane lies outside of a parallel one's half-space.
+inline Real Face::height_of_parallel(const Plane& other) const {
+    return faces_as(other) ? other.offset - plane_.offset : other.offset + plane_.offset;
+}
+
+// By how much roundings may have moved this plane and a parallel one.
+inline Real Face::doubt_beside(const Plane& other) const {
+    return rounding * std::max(std::abs(plane_.offset), std::abs(other.offset));
+}
+
+inline bool Face::coincides_with(int other) const {
+    const Plane& same = plane(other);
+    return nearly_parallel(trace_of(same)) && std::abs(height_of_parallel(same)) <= doubt_beside(same);
+}
+
 // Whether a plane that is parallel to this one leaves nothing of it. Of planes that coincide the one with the lowest
 // index has the face.
 inline bool Face::loses_to_parallel(const Plane& cut, int other) const {
-    const Real doubt = rounding * std::max(std::abs(plane_.offset), std::abs(cut.offset));
-    const bool same_side = dot(plane_.normal, cut.normal) > 0;
-    const Real height = same_side ? cut.offset - plane_.offset : cut.offset + plane_.offset;
-    const bool coincide = std::abs(height) <= doubt;
-    return same_side && coincide ? other < self_ : height >= -doubt;
+    return faces_as(cut) && coincides_with(other) ? other < self_ : height_of_parallel(cut) >= -doubt_beside(cut);
 }
 
 inline bool Face::affected_by(int other) const {

@@ -7,6 +7,8 @@
 //   - Two planes whose angle is smaller are parallel.
 //   - A face that is narrower, relative to its distance from the origin, is none: its plane only touches the body.
 //   - A body that is thinner, relative to its distance from the origin, has no volume.
+// Planes that touch are told from planes that exclude each other by a hair more strictly, with `few_roundings`: as
+// planes of several bodies are told to be the same one.
 // Nothing is compared with an absolute length, so that scaling a body, or its planes' coefficients, changes nothing.
 
 #pragma once
@@ -18,8 +20,9 @@ namespace whitted::halfspaces {
 
 using Real = long double;
 
-inline constexpr Real rounding = 16 * std::numeric_limits<double>::epsilon();  // 2^-48: of the coefficients
-inline constexpr Real noise = 8 * std::numeric_limits<Real>::epsilon();        // of the arithmetic here
+inline constexpr Real rounding = 16 * std::numeric_limits<double>::epsilon();      // 2^-48: of the coefficients
+inline constexpr Real few_roundings = 4 * std::numeric_limits<double>::epsilon();  // as in converter/scene/coplanar.py
+inline constexpr Real noise = 8 * std::numeric_limits<Real>::epsilon();            // of the arithmetic here
 
 struct Vec {
     Real x = 0, y = 0, z = 0;

@@ -84,8 +84,9 @@ inline bool find_inside(const std::vector<Plane>& planes, const std::vector<Face
 
 // What is known of an intersection of half-spaces.
 struct Body {
-    bool solid = false;  // it has a volume; otherwise nothing below is known
-    bool bounded = true;
+    bool solid = false;      // it has a volume
+    std::vector<int> plate;  // if it has none, but a face: the two planes that touch there; see halfspace_plate.h
+    bool bounded = true;     // of what is neither, nothing more is known
     std::vector<int> kept, redundant;  // planes that have a face and planes that have none, ascending
     Vec low, high;                     // box around the points that for_each_anchor() finds
     Vec inside;                        // a point well inside
