@@ -93,6 +93,8 @@ def _print(found: dict[str, Any]) -> None:
             if p["redundant_planes"] or not p["bounded"]
         ],
     )
+    for warning in found["reading_warnings"]:
+        print(f"\nwarning: {warning}")
     for notice in found["notices"]:
         print(f"\nnote: {notice}")
     for warnings in found["warnings"].values():
@@ -161,7 +163,7 @@ def _pigment(pigment: dict[str, Any]) -> str:
         return _numbers(pigment["color"])
     if pigment["kind"] == "checker":
         return f"{_numbers(pigment['first'])} and {_numbers(pigment['second'])}, size {pigment['size']:g}"
-    size = f"{pigment['width']} x {pigment['height']}"
+    size = f"{pigment['width']} x {pigment['height']}" if pigment["width"] else "missing"
     return f"{pigment['file']}, {size}, P0 {_numbers(pigment['p0'])}, P1 {_numbers(pigment['p1'])}"
 
 

@@ -32,6 +32,8 @@ def load_with_notices(
     if not quiet:
         from converter.scene.notices import scene_notices
 
+        for warning in scene.warnings:
+            say(f"warning: {warning}")
         for notice in scene_notices(scene, settings):
             say(f"note: {notice}")
         if method is not None:

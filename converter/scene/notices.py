@@ -8,10 +8,10 @@ from converter.scene.settings import Settings
 
 
 def scene_notices(scene: Scene, settings: Settings) -> list[str]:
-    """One line for each reading of the scene that is a choice: `file:line: finish 2: ior 1.45 is above 1, ...`, and for
-    each of its `enclosure_notices`.
+    """One line for each reading of the scene that is a choice: `file:line: finish 2: ior 1.45 is above 1, ...`; those
+    that its parser has made come first, and its `enclosure_notices` last.
     """
-    notices = []
+    notices = list(scene.notes)
     for k in sorted({o.finish for o in scene.objects}):
         finish = scene.finishes[k]
         if settings.ior == "auto" and finish.kt > 0 and is_index(finish, settings.ior):
