@@ -34,10 +34,10 @@ def run(arguments: argparse.Namespace) -> int:
 
     from converter.commands.inspection import inspect_scene
     from converter.commands.json_out import check_json, write_json
-    from converter.scene.parser import load_scene
+    from converter.commands.notes import load
 
     check_json(arguments.json, [arguments.scene])
-    found = inspect_scene(load_scene(arguments.scene), settings)
+    found = inspect_scene(load(arguments.scene), settings)
     if arguments.json != "-":
         _print(found)
     write_json(arguments.json, found)

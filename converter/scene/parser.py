@@ -180,12 +180,13 @@ def _read(
         Lost: neither gets to the end.
     """
     attempt = reader.attempt()
-    failure = None
+    found, failure = None, None
     try:
         found = by_words(attempt)
     except Lost as lost:
         failure = lost.with_traceback(None)  # which would keep what has been read
-    if by_lines and (failure or not _starts_well(reader, found[1], following)):
+    if by_lines and (found is None or not _starts_well(reader, found[1], following)):
+        found = None  # so that there is room for as much once more
         second = reader.attempt()
         try:
             again = by_lines(second)
@@ -195,8 +196,13 @@ def _read(
         if second.misread:
             reader.adopt(second)
             return again
+        del again
+    if failure is None and found is None:
+        attempt = reader.attempt()
+        found = by_words(attempt)
     reader.adopt(attempt)
-    if failure:
+    if found is None:
+        assert failure
         raise failure
     return found
 
