@@ -14,7 +14,7 @@ import time
 from collections.abc import Iterator
 from pathlib import Path
 
-MEGABYTES = 30
+MEGABYTES = 10
 CAMERA = "0 1 -5\n0 0 0\n0 1 0\n40\n"
 LIGHT = "0 0 0 1 1 1 1 0 0\n"
 REST = "1\n1 0 0 1 0 0 0\n1\n0 0 sphere 0 0 0 1\n"

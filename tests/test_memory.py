@@ -70,13 +70,12 @@ def test_a_reserve_is_left_where_memory_is_not() -> None:
     """Without one, CPython does not get out of the handler below, whose place in the code is a number to allocate."""
     lines = "\n".join(f"    x{i} = {i}" for i in range(400))
     code = f"""\
-import sys
 def fill():
 {lines}
-    kept = []
+    numbers = [None] * 5_000_000
     try:
-        while True:
-            kept = [kept, sys.argv]
+        for i in range(len(numbers)):
+            numbers[i] = i
     finally:
         print("finally")
 from native_tracer import keep_reserve
