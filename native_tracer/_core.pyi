@@ -122,6 +122,9 @@ def trace_pixel(
 def count_nan_pixels(pixels: Buffer) -> int:
     """How many pixels of a float32 buffer, three numbers each, have a NaN among them."""
 
+def keep_reserve() -> None:
+    """Keep some memory for the time when there is no more."""
+
 def quantize(pixels: Buffer) -> bytes:
     """8-bit RGB of a float32 buffer: round(255 c), c clamped to 0..1, a NaN black."""
 

@@ -2,6 +2,7 @@
 
 import time
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
@@ -88,6 +89,8 @@ def test_the_model_holds_floats_and_tuples() -> None:
         pytest.param(lambda t: t.rstrip("\n"), id="no newline at the end"),
         pytest.param(lambda t: t + "\n\n\n", id="blank lines at the end"),
         pytest.param(lambda t: "\ufeff" + t, id="byte-order mark"),
+        pytest.param(lambda t: t + "\x1a", id="end of a DOS file"),
+        pytest.param(lambda t: t.rstrip() + "\x1a\x1a\n", id="padded end of a DOS file"),
         pytest.param(lambda t: t.replace("texmap", "textmap"), id="textmap"),
         pytest.param(lambda t: " ".join(t.split()), id="all on one line"),
         pytest.param(lambda t: "\n".join(t.split()), id="one word a line"),
@@ -130,6 +133,40 @@ def test_layouts_that_mean_the_same(change: Callable[[str], str]) -> None:
 def test_values_that_are_allowed(old: str, new: str) -> None:
     assert old in TEXT
     parse_scene(TEXT.replace(old, new))
+
+
+@pytest.mark.parametrize("count", [0, 1, 2])
+def test_objects_after_the_last_one_are_ignored(count: int) -> None:
+    scene = parse_scene(TEXT.replace("\n3\n0 0 s", f"\n{count}\n0 0 s"), Path("a.in"))
+    assert scene == replace(SCENE, pigments=scene.pigments, objects=SCENE.objects[:count])
+    ignored = "the last one is" if count == 2 else f"the last {3 - count} are"
+    assert scene.warnings == (f"a.in:18: the number of objects is given as {count}, but 3 follow; {ignored} ignored",)
+    assert parse_scene(" ".join(TEXT.split()).replace(" 3 0 0 s", f" {count} 0 0 s")).objects == SCENE.objects[:count]
+
+
+def test_planes_after_the_last_one_are_ignored() -> None:
+    scene = parse_scene(TEXT.replace("polyhedron 2", "polyhedron 1"), Path("a.in"))
+    assert scene.objects[2].shape == Polyhedron(((0, 1, 0, 60),))
+    assert scene.warnings == ("a.in:21: 1 plane is announced, but 2 follow; the last one is ignored",)
+    assert parse_scene(TEXT + "1 0 0 -300\n\n-1 0 0 -300").warnings == (
+        "scene:21: 2 planes are announced, but 4 follow; the last 2 are ignored",
+    )
+
+
+@pytest.mark.parametrize("more", ["5 200", "1 0 0 -5\n5 200", "1 0 0\n-5", "1 0 0 -5\n0 0 sphere 0 0 0 1", "end"])
+def test_what_is_no_whole_object_or_plane_is_not_ignored(more: str) -> None:
+    with pytest.raises(SceneError):
+        parse_scene(f"{TEXT}{more}\n")
+
+
+def test_a_plane_is_a_polyhedron() -> None:
+    scene = parse_scene(TEXT.replace("polyhedron 2\n0 1 0 60\n0 0 -10 -300", "plane 0 1 0 60"), Path("a.in"))
+    assert scene.objects[2].shape == Polyhedron(((0, 1, 0, 60),))
+    assert scene.notes == ("a.in:21: 'plane' is read as 'polyhedron 1'",)
+    assert "1 0 polyhedron 1\n0 1 0 60\n" in write_scene(scene)
+    assert parse_scene(write_scene(scene)).notes == ()
+    two = TEXT.replace("sphere 0 0 0 600", "plane 0 1 0 2").replace("sphere -5.98 32.7 0 20", "plane 1 0 0 2")
+    assert parse_scene(two).notes == ("scene:19: 'plane' is read as 'polyhedron 1', here and once more",)
 
 
 @pytest.mark.parametrize("count", [1, 2, 3, 4, 5])

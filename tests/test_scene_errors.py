@@ -97,6 +97,7 @@ def test_the_statements_own_example_without_its_texture(tmp_path: Path) -> None:
 
 LIGHT = "a light needs 9 numbers for position, colour and attenuation, found"
 FINISH = "a finish needs 7 numbers for ka, kd, ks, alpha, kr, kt and ior, found"
+COMMENT, BLANKS = ": a comment starts with '#'", ": blanks separate numbers, and nothing else"
 LATER = "an addition to the format that is not supported yet"
 CASES = [
     # the camera
@@ -130,9 +131,7 @@ CASES = [
     (15, "3", "2", 15, 1, "the number of finishes is given as 2, but 3 follow"),
     (15, "3", "4", 15, 1, "the number of finishes is given as 4, but 3 follow"),
     (15, "3", "", 16, 1, "expected the number of finishes alone on a line, found '0.80'"),
-    (20, "4", "3", 20, 1, "the number of objects is given as 3, but 4 follow"),
     (20, "4", "5", 20, 1, "the number of objects is given as 5, but 4 follow"),
-    (20, "4", "0", 20, 1, "the number of objects is given as 0, but 4 follow"),
     (20, "4", "1e5", 20, 1, "the number of objects must be a whole number from 0 on, found '1e5'"),
     (20, "4", "999999999999", 20, 1, "the number of objects is given as 999999999999, but 4 follow"),
     (20, "4", "9" * 5000, 20, 1, f"the number of objects is given as {'9' * 37}..., but 4 follow"),
@@ -227,7 +226,23 @@ CASES = [
     (28, "-300", "-300 move 1 0 0", 28, 12, f"move is {LATER}"),
     # the end
     (29, "20", "20\nfim da cena", 30, 1, "unexpected 'fim' after the last of 4 objects"),
-    (29, "20", "20\n7", 30, 1, "unexpected '7' at the beginning of a line after the object"),
+    (29, "20", "20\n7", 30, 1, "unexpected '7' after the last of 4 objects"),
+    (29, "20", "20\n1 0 0 -5", 30, 1, "unexpected '1' after the last of 4 objects"),
+    (29, "20", "20\n0 0 sphere 0 0 0", 30, 1, "unexpected '0' after the last of 4 objects"),
+    (29, "20", "20\n0 0 sphere 0 0 0 0", 20, 1, "the number of objects is given as 4, but 5 follow"),
+    (29, "20", "20\n# end\n// end", 31, 1, f"unexpected '//' after the last of 4 objects{COMMENT}"),
+    # words that other languages have
+    (1, "0 30", "eye 0 30", 1, 1, "the eye's x must be a number, found 'eye'"),
+    (7, "60.0", "light 60.0", 7, 1, "a light's x must be a number, found 'light'"),
+    (4, "40", "// degrees\n40", 4, 1, f"expected fovy's angle, found '//'{COMMENT}"),
+    (1, "0 30", "// a scene\n0 30", 1, 1, f"expected the eye's x, found '//'{COMMENT}"),
+    (1, "0 30", "/* a scene */\n0 30", 1, 1, f"expected the eye's x, found '/*'{COMMENT}"),
+    (1, "-200", "-200 ; eye", 1, 11, f"unexpected ';' after the last number of the eye{COMMENT}"),
+    (5, "3", "3 //lights", 5, 3, f"unexpected '//lights' after the number of lights{COMMENT}"),
+    (22, "20", "20 // ball", 22, 24, f"unexpected '//' after the last number of the object{COMMENT}"),
+    (14, "1 1 1", "1,1,1", 14, 7, f"expected solid's red, found '1,1,1'{BLANKS}"),
+    (14, "1 1 1", "1, 1, 1", 14, 7, f"expected solid's red, found '1,'{BLANKS}"),
+    (14, "solid", "solid,", 14, 1, f"expected solid, checker or texmap, found 'solid,'{BLANKS}"),
 ]
 
 
@@ -259,8 +274,9 @@ def test_no_mistake_has_follow_up_errors(mutation: str) -> None:
                 del lines[line]
             case "double line":
                 lines.insert(line, lines[line])
-        if mutation == "garble" and words[k] == "rainbow1.ppm":
-            continue
+        surplus = mutation == "double line" and "sphere" in LINES[line]
+        if surplus or (mutation == "garble" and words[k] == "rainbow1.ppm"):
+            continue  # nothing that is refused
         found = problems_of("\n".join(lines))
         assert len(found) == 1, (lines[line], found)
         # The place itself, or the section's or polyhedron's count, or where texmap's numbers begin.
@@ -302,6 +318,39 @@ def test_all_mistakes_are_told_in_one_go() -> None:
 def test_a_bad_number_does_not_hide_a_later_mistake_in_the_same_entry() -> None:
     found = problems_of(changed(21, "0 0 0 600", "x1 0 0 -1"))
     assert [(p.line, p.column) for p in found] == [(21, 12), (21, 19)]
+
+
+def test_a_missing_fovy_is_missed() -> None:
+    (problem,) = problems_of(changed(4, "40", ""))
+    assert (problem.line, problem.column) == (5, 1)
+    assert problem.message == "expected fovy, the angle of view, before the number of lights, found '3'"
+    (problem,) = problems_of(changed(4, "40", "fovy 40"))
+    assert problem.message == "expected fovy's angle, found 'fovy'"
+
+
+@pytest.mark.parametrize(("old", "new"), [(" ", ","), (" ", ", "), (" ", ";"), ("\n", ";\n")])
+def test_marks_between_all_numbers_are_told_once(old: str, new: str) -> None:
+    (problem,) = problems_of(TEXT.replace(old, new))
+    assert problem.line == 1
+    assert problem.message.endswith(BLANKS)
+
+
+def test_comments_of_another_language_are_told_once() -> None:
+    (problem,) = problems_of("// by me\n// for you\n" + TEXT.replace("\n3\n", "\n3 // of them\n"))
+    assert (problem.line, problem.column, problem.message) == (1, 1, f"expected the eye's x, found '//'{COMMENT}")
+    (problem,) = problems_of(TEXT.replace("\n", " // why\n"))
+    assert problem.message == f"expected the look-at point's x, found '//'{COMMENT}"
+
+
+def test_labels_before_the_cameras_numbers_are_each_told() -> None:
+    labels = iter(["eye ", "lookat ", "up ", "fovy "])
+    text = "\n".join(next(labels, "") + line for line in LINES)
+    assert [p.line for p in problems_of(text)] == [1, 2, 3, 4]
+
+
+def test_one_plane_is_a_plane() -> None:
+    (problem,) = problems_of(changed(23, "5", "1"))
+    assert problem.message == "1 plane is announced, but 5 follow"
 
 
 def test_a_wrong_count_does_not_put_indices_out_of_range() -> None:

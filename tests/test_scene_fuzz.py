@@ -17,11 +17,28 @@ from converter.scene.errors import SceneError
 from converter.scene.geometry import check_geometry
 from converter.scene.parser import parse_scene
 
-KEYWORDS = ["sphere", "polyhedron", "solid", "checker", "texmap", "csg", "move", "quadric", "Sphere"]
+KEYWORDS = ["sphere", "polyhedron", "plane", "solid", "checker", "texmap", "csg", "move", "quadric", "Sphere"]
 NUMBERS = ["-1", "0", "1", "7", "3.5", "nan", "1e999", "999999999999", "1_0", "\u0663"]
 JUNK = st.one_of(
     st.sampled_from(KEYWORDS + NUMBERS),
-    st.sampled_from(["\n", "\n\n", "\t", "#", "x", "-", "+", "polyhedron 2", "0 0 sphere"]),
+    st.sampled_from(
+        [
+            "\n",
+            "\n\n",
+            "\t",
+            "#",
+            "x",
+            "-",
+            "+",
+            "polyhedron 2",
+            "0 0 sphere",
+            "0 0 plane 0 1 0 2",
+            "//",
+            "1,2,3",
+            "2;",
+            "\x1a",
+        ]
+    ),
     st.text(max_size=6),
 )
 EXTREMES = ["1e308", "-1e308", "1e155", "1e-162", "-1e-40", "5e-324", "1e16", "1", "-1", "0", "0.5", "90"]

@@ -33,6 +33,16 @@ def test_a_scene_survives_writing_and_reading(scene: Scene) -> None:
     assert write_scene(again) == write_scene(scene)
 
 
+@settings(max_examples=60, deadline=None)
+@given(scenes(), st.integers(0, 6))
+def test_a_lowered_count_leaves_out_the_last_objects(scene: Scene, count: int) -> None:
+    text, count = write_scene(scene), min(count, len(scene.objects))
+    head, _, objects = text.rpartition(f"\n\n{len(scene.objects)}\n")
+    fewer = parse_scene(f"{head}\n\n{count}\n{objects}")
+    assert fewer == replace(scene, objects=scene.objects[:count])
+    assert len(fewer.warnings) == (count < len(scene.objects))
+
+
 @settings(max_examples=50, deadline=None)
 @given(st.floats(allow_nan=False, allow_infinity=False))
 def test_every_finite_number_survives(x: float) -> None:

@@ -29,6 +29,10 @@ _UNAVAILABLE = (("converter.renderers.base", "RendererUnavailable"), ("mitsuba_p
 """Modules and the errors in them that a user can mend; by name, so that telling one loads nothing."""
 
 
+_NO_ROOM = "failed to map segment"
+"""What the loader says of a library that does not fit into memory."""
+
+
 class UsageError(Exception):
     """The arguments make no sense; the message says which and why."""
 
@@ -82,8 +86,9 @@ def _told(program: str, error: BaseException) -> tuple[str, int] | None:
     if isinstance(error, OSError):
         reason = error.strerror.lower() if error.strerror else str(error)
         return f"{program}: {error.filename}: {reason}" if error.filename else f"{program}: {reason}", USAGE
-    if isinstance(error, MemoryError):
-        return f"{program}: not enough memory", USAGE
+    if isinstance(error, MemoryError) or (isinstance(error, ImportError) and _NO_ROOM in str(error)):
+        detail = f": {error}" if isinstance(error, MemoryError) and str(error) not in ("", "std::bad_alloc") else ""
+        return f"{program}: not enough memory{detail}", USAGE
     if _is_any(error, (("converter.scene.errors", "SceneError"),)):
         return str(error), USAGE  # it begins with file, line and column, as compilers have it
     if _is_any(error, _UNUSABLE):

@@ -45,10 +45,10 @@ def run(arguments: argparse.Namespace) -> int:
 
     from converter.commands.inspection import inspect_scene
     from converter.commands.json_out import check_json, write_json
-    from converter.scene.parser import load_scene
+    from converter.commands.notes import load
 
     check_json(arguments.json, [arguments.scene])
-    found = inspect_scene(load_scene(arguments.scene), settings)
+    found = inspect_scene(load(arguments.scene), settings)
     if arguments.json != STANDARD_OUTPUT:
         _print(found)
     write_json(arguments.json, found)
@@ -104,6 +104,8 @@ def _print(found: dict[str, Any]) -> None:
             if p["redundant_planes"] or not p["bounded"]
         ],
     )
+    for warning in found["reading_warnings"]:
+        print(f"\nwarning: {warning}")
     for notice in found["notices"]:
         print(f"\nnote: {notice}")
     for warning in found["warnings"].get(DEFAULT, ()):
@@ -175,7 +177,7 @@ def _pigment(pigment: dict[str, Any]) -> str:
         return _numbers(pigment["color"])
     if pigment["kind"] == "checker":
         return f"{_numbers(pigment['first'])} and {_numbers(pigment['second'])}, size {pigment['size']:g}"
-    size = f"{pigment['width']} x {pigment['height']}"
+    size = f"{pigment['width']} x {pigment['height']}" if pigment["width"] else "missing"
     return f"{pigment['file']}, {size}, P0 {_numbers(pigment['p0'])}, P1 {_numbers(pigment['p1'])}"
 
 

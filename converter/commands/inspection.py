@@ -45,6 +45,7 @@ def inspect_scene(scene: Scene, settings: Settings) -> dict[str, Any]:
             "max_depth": needs.max_depth,
         },
         "cutoff": asdict(cutoff_bound(scene, settings)),
+        "reading_warnings": scene.warnings,
         "notices": [*scene_notices(scene, settings), *ior_notices(scene, settings)],
         "warnings": _warnings(scene, settings),
     }
@@ -73,7 +74,8 @@ def _pigment(pigment: Pigment) -> dict[str, Any]:
         return {**kind, **asdict(pigment)}
     from converter.images.texture import probe_texture
 
-    width, height = probe_texture(pigment.file)
+    # A scene may have one that is missing, if no object uses it.
+    width, height = probe_texture(pigment.file) if pigment.file.exists() else (None, None)
     return {**kind, "file": str(pigment.file), "width": width, "height": height, "p0": pigment.p0, "p1": pigment.p1}
 
 

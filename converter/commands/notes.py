@@ -1,5 +1,6 @@
 """What a command tells on stderr besides errors."""
 
+from contextlib import suppress
 from pathlib import Path
 from typing import TYPE_CHECKING
 
@@ -17,6 +18,22 @@ def say(message: str, quiet: bool = False) -> None:
         tell(message)
 
 
+def load(path: str | Path) -> Scene:
+    """The scene in a file. From then on, running out of memory can be told: scenes may be large, and so may pictures.
+
+    Raises:
+        SceneError: the file is no scene.
+
+    """
+    from converter.scene.parser import load_scene
+
+    with suppress(ImportError):  # it is not built: whoever needs it says so
+        from native_tracer import keep_reserve
+
+        keep_reserve()
+    return load_scene(path)
+
+
 def load_with_notices(
     path: str | Path, settings: Settings, quiet: bool = False, method: "Method | None" = None
 ) -> Scene:
@@ -26,12 +43,12 @@ def load_with_notices(
         SceneError: the file is no scene.
 
     """
-    from converter.scene.parser import load_scene
-
-    scene = load_scene(path)
+    scene = load(path)
     if not quiet:
         from converter.scene.notices import scene_notices
 
+        for warning in scene.warnings:
+            say(f"warning: {warning}")
         for notice in scene_notices(scene, settings):
             say(f"note: {notice}")
         if method is not None:

@@ -101,7 +101,7 @@ def tile_margin(pigment: Pigment, p: Floats) -> float:
 def _texel_margin(pigment: Texmap, p: Floats) -> float:
     from converter.images.texture import read_texture
 
-    texture = read_texture(pigment.file)
+    texture = read_texture(pigment.file, pigment.place)
     result = INFINITE
     for row, count in ((pigment.p0, texture.width), (pigment.p1, texture.height)):
         gradient = math.hypot(*row[:3]) * count

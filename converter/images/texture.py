@@ -34,13 +34,21 @@ class TextureError(ValueError):
     """A texture cannot be used; the message names the file and says why."""
 
 
-def read_texture(path: str | Path) -> Texture:
+def read_texture(path: str | Path, place: str = "") -> Texture:
     """The image in the file `path`; an alpha channel is dropped, grey made RGB.
+
+    Args:
+        path: the file.
+        place: where it is named, for messages: `scene.in:8`.
 
     Raises:
         TextureError: the file is missing, no image, broken, or larger than memory.
     """
-    file, start, size = _open(Path(path))
+    told = f"{place}: texture {path}" if place else str(path)
+    try:
+        file, start, size = _open(Path(path))
+    except TextureError as error:
+        raise TextureError(f"{place}: texture {error}" if place else str(error)) from error
     with file:
         try:
             if not ppm.is_ppm(start):
@@ -49,9 +57,9 @@ def read_texture(path: str | Path) -> Texture:
             texels = ppm.read_samples(file, header)
             return _texture(header.width, header.height, texels)
         except ValueError as error:
-            raise TextureError(f"{path}: {error}") from error
+            raise TextureError(f"{told}: {error}") from error
         except MemoryError as error:
-            raise TextureError(f"{path}: it does not fit into memory") from error
+            raise TextureError(f"{told}: it does not fit into memory") from error
 
 
 def probe_texture(path: str | Path, hint: bool = True) -> tuple[int, int]:
@@ -101,9 +109,13 @@ def _similar(path: Path) -> str:
     from converter.scene.errors import did_you_mean
 
     try:
-        return did_you_mean(path.name, tuple(entry.name for entry in islice(path.parent.iterdir(), 1000)))
+        names = [entry.name for entry in islice(path.parent.iterdir(), 1000)]
     except OSError:
         return ""
+    # Endings make any two names of textures alike: what stands before them has to be alike as well.
+    stems = tuple(Path(name).stem for name in names)
+    alike = tuple(name for name, stem in zip(names, stems, strict=True) if did_you_mean(path.stem, (stem,)))
+    return did_you_mean(path.name, alike)
 
 
 def _texture(width: int, height: int, texels: "memoryview[float]") -> Texture:

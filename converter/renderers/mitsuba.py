@@ -12,6 +12,9 @@ from converter.scene.model import Scene
 from converter.scene.settings import Settings
 from converter.to_mitsuba.integrator import Intersections, RayPrecision
 
+LEAST_ROOM = 1 << 30
+"""Bytes of address space: a scene of a few balls took 850 MiB on two cores."""
+
 
 @dataclass(frozen=True)
 class MitsubaRenderer:
@@ -86,6 +89,7 @@ class MitsubaRenderer:
 
     def _start(self) -> str:
         """Load Mitsuba, and return the variant."""
+        _check_room()
         from mitsuba_plugins import BackendError, set_variant
 
         try:
@@ -101,6 +105,21 @@ class MitsubaRenderer:
         return load_description(
             scene_description(scene, settings, self.intersections, self.precision, self.sphere_tolerance, shapes)
         )
+
+
+def _check_room() -> None:
+    """See that LLVM finds room: where it does not, it ends the process.
+
+    Raises:
+        MemoryError: the process may have less.
+
+    """
+    import resource
+
+    limit, _ = resource.getrlimit(resource.RLIMIT_AS)
+    if limit != resource.RLIM_INFINITY and limit < LEAST_ROOM:
+        allowed = f"{LEAST_ROOM >> 20} MiB of address space, and {limit >> 20} are allowed (ulimit -v)"
+        raise MemoryError(f"Mitsuba needs {allowed}; --method native needs less")
 
 
 @contextmanager

@@ -166,7 +166,7 @@ def _add_pigment(native: Any, pigment: Pigment) -> int:
         # The image library takes a while to import, and few scenes have textures.
         from converter.images.texture import read_texture
 
-        texture = read_texture(pigment.file)
+        texture = read_texture(pigment.file, pigment.place)
         index = native.add_texmap(texture.width, texture.height, texture.texels, pigment.p0, pigment.p1)
     return int(index)
 

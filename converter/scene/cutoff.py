@@ -163,7 +163,7 @@ def _largest(pigment: Pigment) -> Floats:
     else:
         from converter.images.texture import read_texture
 
-        texels = np.asarray(read_texture(pigment.file).texels)
+        texels = np.asarray(read_texture(pigment.file, pigment.place).texels)
         colors = [texels.min(axis=(0, 1)), texels.max(axis=(0, 1))]
     largest: Floats = np.abs(np.array(colors, dtype=np.float64)).max(axis=0)
     return largest

@@ -59,4 +59,6 @@ def _why_nothing(planes: Sequence[Plane], conflict: Sequence[int]) -> str:
     # Two planes without a volume between them are parallel, and face away from each other.
     distances = [planes[k][3] / hypot(*planes[k][:3]) for k in conflict]
     apart = sum(distances) > 1e-12 * max(map(abs, distances))
-    return f"its planes {listed} {'exclude each other' if apart else 'touch, and leave neither a volume nor a face'}"
+    if apart:
+        return f"its planes {listed} exclude each other: inside is a x + b y + c z + d <= 0, so turn the signs of both"
+    return f"its planes {listed} touch, and leave neither a volume nor a face"

@@ -9,10 +9,19 @@ and the others are still read.
 from collections.abc import Callable
 from typing import Any
 
-from converter.scene.entries import CAMERA, FOVY, NOT_YET, PLANE, Lost, Numbers, Reader
+from converter.scene.entries import CAMERA, FOVY, NOT_YET, PLANE, Lost, Numbers, Reader, announced, has_digits
 from converter.scene.errors import shown
-from converter.scene.sections import Section, is_alone, miscounted, read_count
-from converter.scene.tokens import number, whole
+from converter.scene.sections import (
+    SECTIONS,
+    Line,
+    Section,
+    count_planes,
+    is_alone,
+    leftover,
+    miscounted,
+    read_count,
+)
+from converter.scene.tokens import COMMENT_HINT, HUGE, LONG_LINE, SEPARATOR_HINT, found, hint, number, whole
 
 
 def has_lines(reader: Reader) -> bool:
@@ -20,9 +29,14 @@ def has_lines(reader: Reader) -> bool:
     at, alike = 0, 0
     for part in CAMERA:
         line = reader.text.on_line(at)
-        alike += len(line) == len(part.fields)
-        at += len(line)
+        alike += len(line) - _has_label(line) == len(part.fields)
+        at += len(line)  # a line too long is none of these, wherever it ends
     return alike >= 3
+
+
+def _has_label(line: Line) -> bool:
+    """Whether a name stands before the numbers of a line, which the format has not."""
+    return len(line) > 1 and not has_digits(line[0]) and has_digits(line[1])
 
 
 def read_camera_by_lines(reader: Reader) -> int:
@@ -34,14 +48,26 @@ def read_camera_by_lines(reader: Reader) -> int:
     at = 0
     for part in CAMERA:
         line = reader.text.on_line(at)
-        if part is FOVY and len(line) > 1 and not _may_have_lens(reader, at):
-            raise Lost(at, f"expected fovy alone on its line, found {shown(line[0])} and more")
+        while line and hint(line[0]) == COMMENT_HINT:
+            reader.misreads(at, f"expected {part.owner}'s {part.fields[0]}, {found(line[0])}")
+            at = reader.text.line_end(at)
+            line = reader.text.on_line(at)
+        if line and hint(line[0]) == SEPARATOR_HINT:
+            raise Lost(at, f"expected {part.owner}'s {part.fields[0]}, {found(line[0])}")
+        if part is FOVY and len(line) > 1 and not _has_label(line) and not _may_have_lens(reader, at):
+            raise Lost(at, f"expected fovy alone on its line, found {shown(line[0])} and more{hint(line[1])}")
+        if part is FOVY and _counts_lights(reader, at):
+            reader.misreads(
+                at, f"expected fovy, the angle of view, before the number of lights, found {shown(line[0])}"
+            )
+            continue
         if is_alone(line) and part is not FOVY:  # its line is missing, and this one is fovy's
             reader.misreads(at, f"expected {part.owner}, {len(part.fields)} numbers, found {shown(line[0])} alone")
             continue
         extra = "an aperture and a focal distance after fovy" if part is FOVY else ""
-        _read_entry(reader, at, at + len(line), _reads(part), part.owner, extra)
-        at += len(line)
+        end = reader.text.line_end(at)
+        _read_entry(reader, at, end, _reads(part), part.owner, extra)
+        at = end
     return at
 
 
@@ -50,6 +76,17 @@ def _may_have_lens(reader: Reader, at: int) -> bool:
     line = reader.text.on_line(at)
     count = reader.text.on_line(at + len(line))
     return len(line) == 3 and is_alone(count) and not is_alone(reader.text.on_line(at + len(line) + 1))
+
+
+def _counts_lights(reader: Reader, at: int) -> bool:
+    """Whether the line is the number of lights rather than fovy: so many lights follow it."""
+    line, lights = reader.text.on_line(at), SECTIONS[0]
+    count = (is_alone(line) and whole(line[0])) or 0
+    for k in range(count + 1):
+        at = reader.text.line_end(at)
+        if not lights.opens(reader.text.on_line(at)):
+            return k == count > 0
+    return False
 
 
 def read_section_by_lines(
@@ -64,26 +101,32 @@ def read_section_by_lines(
     count, at = _read_head(reader, at, section)
     found: list[Any] = []
     intact = reader.misread
-    while at < len(reader.words):
+    while reader.text.has(at):
         line = reader.text.on_line(at)
         if following and (
             is_alone(line) or ((count is None or len(found) >= count) and _begins(reader, at, following))
         ):
             break
+        closes = following is None and count is not None and len(found) + 1 >= count
+        if closes and count_planes(reader, at, found):
+            break  # to be ignored
         end = _entry_end(reader, at, section)
+        if closes and len(found) + 1 == count:
+            end = _last_end(reader, at, end, section, len(found))
         misread = reader.misread
         entry = _read_entry(
             reader, at, end, lambda r, a: section.read(r, a, len(found)), f"the {section.singular}", section.extra
         )
         if following is None and count is not None and len(found) >= count and reader.misread > misread:
             # Not one object more, but something else.
-            reader.problems[-1] = (at, f"unexpected {shown(line[0])} after the last of {count} objects")
-            return found, len(reader.words)
+            reader.problems[-1:] = [(at, leftover(line[0], count))]
+            return found, HUGE
         found.append(entry)
-        if entry is None and "csg" in reader.words[at:end]:  # whose operands look like objects
-            return found, len(reader.words)
+        if entry is None and "csg" in reader.text.cut(at, min(end - at, LONG_LINE)):  # whose operands look like objects
+            return found, HUGE
         at = end
-    if count is not None and len(found) != count and reader.misread == intact:
+    surplus = following is None and len(found) >= (count or 0)  # of objects, which are ignored
+    if count is not None and len(found) != count and reader.misread == intact and not surplus:
         message = miscounted(reader, head, section, len(found))
         if not found:
             raise Lost(head, message)
@@ -107,22 +150,34 @@ def _read_head(reader: Reader, at: int, section: Section) -> tuple[int | None, i
         count = read_count(reader, at, section)
     except Lost as lost:
         reader.misreads(lost.at, lost.message)
-        return None, at + len(line)
+        return None, reader.text.line_end(at)
     if len(line) > 1 and not section.opens(line[1:]):
-        reader.misreads(at + 1, f"unexpected {shown(line[1])} after the number of {section.plural}")
-        return count, at + len(line)
+        message = f"unexpected {shown(line[1])} after the number of {section.plural}{hint(line[1])}"
+        reader.misreads(at + 1, message)
+        return count, reader.text.line_end(at)
     return count, at + 1
 
 
 def _entry_end(reader: Reader, at: int, section: Section) -> int:
     """Index after the entry that begins at the word `at`, as far as the lines tell."""
     end = reader.text.line_end(at)
-    while end < len(reader.words):
+    while reader.text.has(end):
         line = reader.text.on_line(end)
-        if not section.goes_on(reader.words[at], end - at, line):
+        if not section.goes_on(reader.text[at], end - at, line):
             break
-        end += len(line)
+        end = reader.text.line_end(end)
     return end
+
+
+def _last_end(reader: Reader, at: int, end: int, section: Section, k: int) -> int:
+    """Index after the last entry of a file, where it is whole: lines behind it belong to nothing."""
+    if reader.text.has(end):
+        return end
+    try:
+        _, after = section.read(reader.attempt(), at, k)
+    except Lost:
+        return end
+    return after if after < end and reader.text.line_start(after) == after else end
 
 
 def _read_entry(
@@ -138,9 +193,10 @@ def _read_entry(
     else:
         if after == end:
             return entry
-        wrong = after, _unexpected(reader, after, owner, extra)
+        strange = [problem for problem in reader.problems[noted:] if not has_digits(reader.text[problem[0]])]
+        wrong = strange[0] if strange else (after, _unexpected(reader, after, owner, extra))
     finally:
-        reader.limit = len(reader.words)
+        reader.limit = HUGE
     del reader.problems[noted:]  # about numbers that stand in the wrong place
     reader.misreads(*(_wrong_planes(reader, at, end) or wrong))
     return None
@@ -148,12 +204,12 @@ def _read_entry(
 
 def _unexpected(reader: Reader, at: int, owner: str, extra: str) -> str:
     """The message for a word behind an entry's last."""
-    word = reader.words[at]
+    word = reader.text[at]
     if extra and number(word) == number(word):
         return f"{extra}: {NOT_YET}"
     if reader.text.line_start(at) == at:
-        return f"unexpected {shown(word)} at the beginning of a line after {owner}"
-    return f"unexpected {shown(word)} after the last number of {owner}"
+        return f"unexpected {shown(word)} at the beginning of a line after {owner}{hint(word)}"
+    return f"unexpected {shown(word)} after the last number of {owner}{hint(word)}"
 
 
 def _reads(part: Numbers) -> Callable[[Reader, int], tuple[Any, int]]:
@@ -162,17 +218,16 @@ def _reads(part: Numbers) -> Callable[[Reader, int], tuple[Any, int]]:
 
 def _wrong_planes(reader: Reader, at: int, end: int) -> tuple[int, str] | None:
     """What is wrong with a polyhedron that has a line for each plane; None if it is something else, or nothing."""
-    head = reader.words[at : reader.text.line_end(at)]
-    if len(head) < 4 or head[2] != "polyhedron" or not whole(head[3]) or end <= at + 4:
+    head, line_at = reader.text.cut(at, 5), reader.text.line_end(at)
+    if line_at < at + 4 or head[2] != "polyhedron" or not whole(head[3]) or end <= at + 4:
         return None
-    planes, rest = divmod(len(head) - 4, len(PLANE.fields))
+    planes, rest = divmod(line_at - at - 4, len(PLANE.fields))
     if rest:
-        return at + 4, f"unexpected {shown(head[4])} after the number of planes"
-    line_at = at + len(head)
+        return at + 4, f"unexpected {shown(head[4])} after the number of planes{hint(head[4])}"
     while line_at < end:
-        line = reader.text.on_line(line_at)
-        if len(line) != len(PLANE.fields):
-            return line_at, f"{PLANE.owner} needs 4 numbers for {PLANE.purpose}, found {len(line)} on its line"
+        size = reader.text.line_end(line_at) - line_at
+        if size != len(PLANE.fields):
+            return line_at, f"{PLANE.owner} needs 4 numbers for {PLANE.purpose}, found {size} on its line"
         planes += 1
-        line_at += len(line)
-    return at + 3, f"{shown(head[3])[1:-1]} planes are announced, but {planes} {'follows' if planes == 1 else 'follow'}"
+        line_at += size
+    return at + 3, f"{announced(head[3])}, but {planes} {'follows' if planes == 1 else 'follow'}"

@@ -55,6 +55,7 @@ class Texmap:
     file: Path  # as it can be opened: already relative to the scene's folder
     p0: tuple[float, float, float, float]
     p1: tuple[float, float, float, float]
+    place: str = field(default="", compare=False)  # `scene.in:8`, where it is named; empty: made by a program
 
 
 Pigment = Solid | Checker | Texmap
@@ -103,7 +104,10 @@ class Object:
 
 @dataclass(frozen=True, slots=True, weakref_slot=True)
 class Scene:
-    """A whole scene. `ambient` is the file's first light, whose position and attenuation mean nothing."""
+    """A whole scene. `ambient` is the file's first light, whose position and attenuation mean nothing.
+
+    `notes` and `warnings` are what a reader should be told of how the file was read, each with its place.
+    """
 
     camera: Camera
     ambient: Color
@@ -115,3 +119,5 @@ class Scene:
     finish_lines: tuple[int, ...] = field(default=(), compare=False)
     light_lines: tuple[int, ...] = field(default=(), compare=False)
     pigment_lines: tuple[int, ...] = field(default=(), compare=False)
+    notes: tuple[str, ...] = field(default=(), compare=False)
+    warnings: tuple[str, ...] = field(default=(), compare=False)

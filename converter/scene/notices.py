@@ -9,11 +9,13 @@ from converter.scene.settings import Settings
 
 
 def scene_notices(scene: Scene, settings: Settings) -> list[str]:
-    """One line for each thing: plates without thickness, what is shut in or out, and what is surely not meant.
+    """One line for each thing: what its parser chose, plates without thickness, what is shut in or out, and what is
+    surely not meant.
 
     `ior_notices` are not among them: they are for whoever looks into a scene, or draws it without `--ior`.
     """
     return [
+        *scene.notes,
         *_plate_notices(scene, settings),
         *enclosure_notices(scene, settings),
         *oddity_notices(scene, settings),

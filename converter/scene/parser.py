@@ -7,25 +7,30 @@ Reading is first by words (`sections`), as the format says, and again by lines (
 """
 
 import errno
-from collections.abc import Callable
+import gc
+import os
+from collections.abc import Callable, Iterator
+from contextlib import contextmanager
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
 from converter.scene import entries
 from converter.scene.entries import Lost, Reader
-from converter.scene.errors import Problem, SceneError, shown
+from converter.scene.errors import Problem, SceneError, place
 from converter.scene.lines import has_lines, read_camera_by_lines, read_section_by_lines
-from converter.scene.model import Camera, Polyhedron, Scene
-from converter.scene.sections import SECTIONS, Section, is_alone, read_by_count
-from converter.scene.tokens import Words, decode, number, whole
+from converter.scene.model import Camera, Polyhedron, Scene, Texmap
+from converter.scene.sections import SECTIONS, Section, is_alone, pass_over_surplus, read_by_count
+from converter.scene.tokens import COMMENT_HINT, SEPARATOR_HINT, Words, decode, number, whole
 
 _Read = TypeVar("_Read")
 MOST_PROBLEMS = 20
 """Problems that are told; who has more mends these first."""
 BLOCK = 1 << 16
 LONGEST = 1 << 28
-"""Bytes of a file, far more than whose words find room: a pipe may never end."""
+"""Bytes of a file: a pipe may never end."""
+LONGEST_BY_LINES = 1 << 24
+"""Characters up to which a second reading, by lines, takes no time that matters."""
 
 
 def parse_scene(text: str | bytes, file: Path | None = None) -> Scene:
@@ -52,7 +57,7 @@ def load_scene(path: str | Path) -> Scene:
     except OSError as error:
         raise SceneError([Problem(file, 0, 0, _why_unreadable(error))]) from error
     scene, reader = _read_text(Words(decode(data, file), file))
-    _check_textures(reader)
+    scene = _find_textures(scene, reader)
     problems: list[Problem] = []
     if scene and any(isinstance(o.shape, Polyhedron) for o in scene.objects):
         from converter.scene.geometry import check_geometry
@@ -81,14 +86,27 @@ def _read_bytes(file: Path) -> bytes:
 def _read_text(text: Words) -> tuple[Scene | None, Reader]:
     """The scene, if nothing is wrong, and the reader, which has noted what is wrong otherwise."""
     reader = Reader(text)
-    if not text.words:
+    if not text.has(0):
         reader.complain(0, "the scene is empty")
         return None, reader
-    scene = _read_scene(reader, in_lines=False)
-    if reader.misread and has_lines(reader):
-        reader = Reader(text)
-        _read_scene(reader, in_lines=True)
+    with _uncollected():
+        scene = _read_scene(reader, in_lines=False)
+        if reader.misread and text.size < LONGEST_BY_LINES and has_lines(reader):
+            reader = Reader(text)
+            _read_scene(reader, in_lines=True)
     return scene, reader
+
+
+@contextmanager
+def _uncollected() -> Iterator[None]:
+    """No garbage collection: it would look again and again at all that is read, a tenth of the time, and find none."""
+    enabled = gc.isenabled()
+    gc.disable()
+    try:
+        yield
+    finally:
+        if enabled:
+            gc.enable()
 
 
 def _read_scene(reader: Reader, in_lines: bool) -> Scene | None:
@@ -102,7 +120,7 @@ def _read_scene(reader: Reader, in_lines: bool) -> Scene | None:
         reader.finishes = max(len(finishes), reader.announced)
         objects, at = _read_section(reader, at, 3, in_lines)
     except Lost as lost:
-        if not reader.misread or lost.at < len(reader.words):  # that the end comes too soon is no news then
+        if not reader.misread or reader.text.has(lost.at):  # that the end comes too soon is no news then
             reader.misreads(lost.at, lost.message)
     if reader.problems or camera is None:
         return None
@@ -114,9 +132,9 @@ def _read_scene(reader: Reader, in_lines: bool) -> Scene | None:
         finishes=tuple(finishes),
         objects=tuple(objects),
         file=reader.text.file,
-        light_lines=tuple(reader.light_lines[k] for k in range(1, len(lights))),
-        pigment_lines=tuple(reader.pigment_lines[k] for k in range(len(pigments))),
-        finish_lines=tuple(reader.finish_lines[k] for k in range(len(finishes))),
+        light_lines=tuple(reader.light_lines[1:]),
+        pigment_lines=tuple(reader.pigment_lines),
+        finish_lines=tuple(reader.finish_lines),
     )
 
 
@@ -139,15 +157,15 @@ def _read_section(reader: Reader, at: int, which: int, in_lines: bool) -> tuple[
 
     def by_words(attempt: Reader) -> tuple[list[Any], int]:
         found, end = read_by_count(attempt, at, section)
-        if following is None and end < len(reader.words):
-            raise Lost(end, f"unexpected {shown(reader.words[end])} after the last of {len(found)} objects")
+        if following is None and reader.text.has(end):
+            pass_over_surplus(attempt, at, end, found)
         return found, end
 
     def by_lines(attempt: Reader) -> tuple[list[Any], int]:
         return read_section_by_lines(attempt, at, section, following)
 
-    begins_line = at < len(reader.words) and reader.text.line_start(at) == at
-    return _read(reader, by_words, by_lines if in_lines and begins_line else None, following)
+    begins_line = in_lines and reader.text.has(at) and reader.text.line_start(at) == at
+    return _read(reader, by_words, by_lines if begins_line else None, following)
 
 
 def _read(
@@ -162,12 +180,13 @@ def _read(
         Lost: neither gets to the end.
     """
     attempt = reader.attempt()
-    failure = None
+    found, failure = None, None
     try:
         found = by_words(attempt)
     except Lost as lost:
-        failure = lost
-    if by_lines and (failure or not _starts_well(reader, found[1], following)):
+        failure = lost.with_traceback(None)  # which would keep what has been read
+    if by_lines and (found is None or not _starts_well(reader, found[1], following)):
+        found = None  # so that there is room for as much once more
         second = reader.attempt()
         try:
             again = by_lines(second)
@@ -177,8 +196,13 @@ def _read(
         if second.misread:
             reader.adopt(second)
             return again
+        del again
+    if failure is None and found is None:
+        attempt = reader.attempt()
+        found = by_words(attempt)
     reader.adopt(attempt)
-    if failure:
+    if found is None:
+        assert failure
         raise failure
     return found
 
@@ -194,19 +218,50 @@ def _starts_well(reader: Reader, at: int, section: Section | None) -> bool:
     return whole(line[0]) is not None and section.opens(line[1:]) and not section.opens(line)
 
 
-def _check_textures(reader: Reader) -> None:
-    """Complain of every texture that cannot be opened, used or not: its pixels are read only if it is."""
+def _find_textures(scene: Scene | None, reader: Reader) -> Scene | None:
+    """The scene with every texture's file as it can be opened: beside the scene, else in the working folder.
+
+    Complains of each that cannot be opened; of one that is missing, and that no object uses, it warns.
+    """
     if not reader.textures:
-        return
+        return scene
     from converter.images.texture import TextureError, probe_texture
 
-    for at, file in reader.textures.items():
-        if reader.misread and number(reader.words[at]) == number(reader.words[at]):
+    used = reader.used_pigments or set(reader.textures)  # all, where no objects were found
+    if scene:
+        used = {o.pigment for o in scene.objects}
+    elsewhere: dict[int, Path] = {}
+    missing = 0
+    for k, at in reader.textures.items():
+        name = reader.text[at]
+        if reader.misread and number(name) == number(name):
             continue  # the name is what is missing
+        file = reader.folder / name
+        where = place(reader.text.file, reader.text.line(at))
+        if not os.access(file, os.F_OK) and os.access(name, os.F_OK):
+            elsewhere[k] = file = Path(name)
+            reader.notes.append(f"{where}: texture {name} is not beside the scene, but read from the working folder")
         try:
-            probe_texture(file, hint=len(reader.problems) < MOST_PROBLEMS)
+            probe_texture(file, hint=max(len(reader.problems), missing) < MOST_PROBLEMS)
         except TextureError as error:
-            reader.complain(at, f"texture {error}")
+            if k in used or not isinstance(error.__cause__, FileNotFoundError):
+                reader.complain(at, f"texture {error}")
+                continue
+            missing += 1
+            if missing <= MOST_PROBLEMS:
+                reader.warnings.append(f"{where}: texture {error}; no object uses pigment {k}")
+    if missing > MOST_PROBLEMS:
+        reader.warnings.append(
+            f"{reader.text.file}: {missing - MOST_PROBLEMS} more textures that no object uses are missing"
+        )
+    if scene is None or not elsewhere:
+        return scene
+    pigments = list(scene.pigments)
+    for k, file in elsewhere.items():
+        pigment = pigments[k]
+        assert isinstance(pigment, Texmap)
+        pigments[k] = replace(pigment, file=file)
+    return replace(scene, pigments=tuple(pigments))
 
 
 def _checked(scene: Scene | None, reader: Reader, more: list[Problem]) -> Scene:
@@ -216,15 +271,34 @@ def _checked(scene: Scene | None, reader: Reader, more: list[Problem]) -> Scene:
         SceneError: with what the reader has noted and `more`, in the file's order.
     """
     if scene is not None and not reader.problems and not more:
-        return scene
-    noted = sorted(reader.problems, key=lambda problem: problem[0])
+        notes = (*_reading_notes(reader), *reader.notes)
+        return replace(scene, notes=notes, warnings=tuple(reader.warnings)) if notes or reader.warnings else scene
+    noted = _without_repeats(sorted(reader.problems, key=lambda problem: problem[0]))
     told = [reader.text.problem(at, message) for at, message in noted[:MOST_PROBLEMS]]
-    lines = reader.text.lines
-    for problem in more:
-        source = lines[problem.line - 1] if 0 < problem.line <= len(lines) else ""
-        told.append(replace(problem, source_line=problem.source_line or source))
+    told += [replace(problem, source_line=reader.text.source_line(problem.line)) for problem in more]
     told.sort(key=lambda problem: (problem.line, problem.column))
-    raise SceneError(told[:MOST_PROBLEMS], len(noted) + len(more) - len(told[:MOST_PROBLEMS]))
+    count = len(noted) + reader.unnoted + len(more)
+    raise SceneError(told[:MOST_PROBLEMS], count - len(told[:MOST_PROBLEMS]))
+
+
+def _without_repeats(problems: list[tuple[int, str]]) -> list[tuple[int, str]]:
+    """Problems without those that come of a habit, such as commas between all numbers, but for the first."""
+    kept, seen = [], set()
+    for at, message in problems:
+        habit = next((hint for hint in (COMMENT_HINT, SEPARATOR_HINT) if message.endswith(hint)), None)
+        if habit not in seen:
+            kept.append((at, message))
+        seen.update([habit] if habit else [])
+    return kept
+
+
+def _reading_notes(reader: Reader) -> list[str]:
+    """A note on `plane`, where the scene has it."""
+    if not reader.plane_lines:
+        return []
+    count = len(reader.plane_lines)
+    where = "" if count == 1 else f", here and {count - 1} more times" if count > 2 else ", here and once more"
+    return [f"{place(reader.text.file, reader.plane_lines[0])}: 'plane' is read as 'polyhedron 1'{where}"]
 
 
 def _why_unreadable(error: OSError) -> str:

@@ -4,9 +4,10 @@ from collections.abc import Callable
 from typing import Any, NamedTuple
 
 from converter.scene import entries
-from converter.scene.entries import FINISH, LIGHT, PIGMENTS, Lost, Reader, is_name
-from converter.scene.errors import shown
-from converter.scene.tokens import number, whole, why_no_number
+from converter.scene.entries import FINISH, LIGHT, PIGMENTS, PLANE, Lost, Reader, announced, is_name
+from converter.scene.errors import place, shown
+from converter.scene.model import Object, Polyhedron
+from converter.scene.tokens import HUGE, hint, number, whole, why_no_number
 
 Line = list[str]
 
@@ -100,14 +101,76 @@ def read_by_count(reader: Reader, at: int, section: Section) -> tuple[list[Any],
     at += 1
     found: list[Any] = []
     while len(found) < count:
-        if at >= reader.limit:
-            raise Lost(head, miscounted(reader, head, section, len(found)))
-        entry, at = section.read(reader, at, len(found))
+        try:
+            entry, at = section.read(reader, at, len(found))
+        except Lost:
+            if reader.has(at):
+                raise
+            raise Lost(head, miscounted(reader, head, section, len(found))) from None
         found.append(entry)
     return found, at
 
 
 def miscounted(reader: Reader, at: int, section: Section, found: int) -> str:
     """The message for a section whose count, at the word `at`, is not what follows."""
-    told = f"the number of {section.plural} is given as {shown(reader.words[at])[1:-1]}"
+    told = f"the number of {section.plural} is given as {shown(reader.text[at])[1:-1]}"
     return f"{told}, but {found or 'none'} {'follows' if found == 1 else 'follow'}"
+
+
+def pass_over_surplus(reader: Reader, head: int, at: int, found: list[Object | None]) -> None:
+    """Warn that what stands behind the last object is ignored; `head` is the number of objects, `at` what follows them.
+
+    People lower a count to leave out the last objects, or the last planes of the last one.
+
+    Raises:
+        Lost: it is no whole objects, and no planes of the last one.
+    """
+    file = reader.text.file
+    if planes := count_planes(reader, at, found):
+        last = found[-1]
+        assert last is not None and isinstance(last.shape, Polyhedron)
+        count = len(last.shape.planes)
+        told = f"{announced(str(count))}, but {count + planes} follow"
+        reader.warnings.append(f"{place(file, last.line)}: {told}; {_ignored(planes)}")
+        return
+    attempt = reader.attempt()
+    attempt.pigments = attempt.finishes = HUGE  # what is ignored may have any
+    count, end = len(found), at
+    while attempt.has(end):
+        try:
+            _, end = entries.object_(attempt, end, count)
+        except Lost:
+            break
+        count += 1
+    if attempt.has(end):
+        raise Lost(at, leftover(reader.text[at], len(found)))
+    told = miscounted(reader, head, SECTIONS[-1], count)
+    if attempt.problems:
+        raise Lost(head, told)
+    reader.warnings.append(f"{place(file, reader.text.line(head))}: {told}; {_ignored(count - len(found))}")
+
+
+def count_planes(reader: Reader, at: int, found: list[Object | None]) -> int:
+    """How many planes, a line each, follow the last object to the end of the file; 0 if it has none, or others do."""
+    last = found[-1] if found else None
+    if last is None or not isinstance(last.shape, Polyhedron) or reader.text.line_start(at) != at:
+        return 0
+    count, size = 0, len(PLANE.fields)
+    while reader.text.has(at):
+        if reader.text.line_end(at) - at != size or not reader.good_numbers(at, size):
+            return 0
+        count += 1
+        at += size
+    return count
+
+
+def leftover(word: str, count: int) -> str:
+    """The message for a word behind the last of so many objects."""
+    where = {0: "where no objects are announced", 1: "after the only object"}.get(
+        count, f"after the last of {count} objects"
+    )
+    return f"unexpected {shown(word)} {where}{hint(word)}"
+
+
+def _ignored(count: int) -> str:
+    return "the last one is ignored" if count == 1 else f"the last {count} are ignored"

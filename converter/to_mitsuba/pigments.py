@@ -26,7 +26,7 @@ def texture(pigment: Pigment) -> dict[str, Any]:
         }
     return {
         "type": "projected_bitmap",
-        "data": read_texture(pigment.file),
+        "data": read_texture(pigment.file, pigment.place),
         "to_s": " ".join(map(repr, pigment.p0)),
         "to_r": " ".join(map(repr, pigment.p1)),
     }

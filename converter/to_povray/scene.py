@@ -54,7 +54,7 @@ def povray_scene(scene: Scene, settings: Settings, name: str = "scene") -> Povra
     scene = scaled(scene, factor)
     needs = scene_needs(scene, settings)
     images = {
-        i: Image(f"{name}_pigment_{i}.ppm", read_texture(source.file), source)
+        i: Image(f"{name}_pigment_{i}.ppm", read_texture(source.file, source.place), source)
         for i in needs.pigments
         if isinstance(source := scene.pigments[i], Texmap)
     }

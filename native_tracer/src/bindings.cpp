@@ -1,5 +1,5 @@
 // The Python module: a builder for scenes here, rendering in bind_render.cpp, half-spaces in bind_halfspaces.cpp,
-// trees over boxes in bind_bvh.cpp, points on surfaces in bind_incidence.cpp.
+// trees over boxes in bind_bvh.cpp, points on surfaces in bind_incidence.cpp, a reserve of memory in bind_memory.cpp.
 
 #include "bindings.h"
 
@@ -174,4 +174,5 @@ NB_MODULE(_core, module) {
     bind_halfspaces(module);
     bind_bvh(module);
     bind_incidence(module);
+    bind_memory(module);
 }

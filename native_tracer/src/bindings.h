@@ -9,3 +9,4 @@ void bind_render(nanobind::module_& module);
 void bind_halfspaces(nanobind::module_& module);
 void bind_bvh(nanobind::module_& module);
 void bind_incidence(nanobind::module_& module);
+void bind_memory(nanobind::module_& module);

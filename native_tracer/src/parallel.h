@@ -5,6 +5,8 @@
 #include <algorithm>
 #include <atomic>
 #include <cstddef>
+#include <exception>
+#include <mutex>
 #include <system_error>
 #include <thread>
 #include <vector>
@@ -12,15 +14,22 @@
 namespace whitted {
 
 // Calls work(i) for all i below count, from as many threads as there are cores, but from no more than one for each
-// `share` of them.
+// `share` of them. What work throws first is thrown here, once all threads have ended.
 template <typename Work>
 void for_each_index(std::size_t count, std::size_t share, Work work) {
     const std::size_t thread_count =
         std::clamp<std::size_t>(count / share, 1, std::max(1U, std::thread::hardware_concurrency()));
     std::atomic<std::size_t> next = 0;
+    std::exception_ptr failure;
+    std::once_flag failed;
     const auto loop = [&] {
-        for (std::size_t i = next++; i < count; i = next++) {
-            work(i);
+        try {
+            for (std::size_t i = next++; i < count; i = next++) {
+                work(i);
+            }
+        } catch (...) {
+            next = count;
+            std::call_once(failed, [&] { failure = std::current_exception(); });
         }
     };
     std::vector<std::thread> threads;
@@ -34,6 +43,9 @@ void for_each_index(std::size_t count, std::size_t share, Work work) {
     loop();
     for (std::thread& thread : threads) {
         thread.join();
+    }
+    if (failure) {
+        std::rethrow_exception(failure);
     }
 }
 

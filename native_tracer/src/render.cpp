@@ -9,6 +9,7 @@
 #include <mutex>
 #include <new>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -57,12 +58,16 @@ class Drawing {
                 }
                 try {
                     workers.emplace_back([this] { work(); });
-                } catch (...) {
+                } catch (const std::system_error&) {  // no room for its stack: fewer will do
                     const std::lock_guard lock(mutex_);
                     --working_;
-                    throw;
+                    break;
                 }
             }
+            if (workers.empty()) {
+                throw std::bad_alloc();
+            }
+            image_.threads = static_cast<int>(workers.size());
             wait(watch);
         } catch (...) {
             stop_ = true;
