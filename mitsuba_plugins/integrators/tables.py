@@ -53,6 +53,8 @@ class Materials:
         self._finish = column(mi.UInt32, [finish_row[id(bsdf)] for bsdf in bsdfs])
         self._texture = column(mi.UInt32, [texture_row[id(bsdf.pigment)] for bsdf in bsdfs])
         self._colors = [_color_function(texture) for texture in textures.values()]
+        self.has_edges = any(hasattr(texture, "color_at") for texture in textures.values())
+        """Whether a pigment's colour changes from one point to the next, so that it matters how far points are off."""
         zero, rows = mi.Float64(0), finishes.values()
         self._weights = mi.Float(dr.concat([n for f in rows for n in (f.ka, f.kd, f.ks, zero)] or [zero] * 4))
         self._exact = types.Float(dr.concat([n for f in rows for n in (f.kr, f.kt, f.eta, f.alpha)] or [zero] * 4))
@@ -65,20 +67,20 @@ class Materials:
         kr, kt, eta, alpha = dr.gather(self._types.Vector4, self._exact, row, active)
         return Finish(ka, kd, ks, alpha, kr, kt, eta)
 
-    def color(self, index: Any, p: Any, active: Any) -> Any:
-        """An object's pigment (Color3f) at a position (Point3)."""
+    def color(self, index: Any, p: Any, errors: Any, active: Any) -> Any:
+        """An object's pigment (Color3f) at a position (Point3), whose coordinates may be off by `errors` (Vector3)."""
         if not self._colors:
             return mi.Color3f(0)
         if len(self._colors) == 1:
-            return self._colors[0](p)
-        return dr.switch(dr.gather(mi.UInt32, self._texture, index, active), self._colors, p)
+            return self._colors[0](p, errors)
+        return dr.switch(dr.gather(mi.UInt32, self._texture, index, active), self._colors, p, errors)
 
 
 def _color_function(texture: Any) -> Any:
     if hasattr(texture, "color_at"):
         return texture.color_at
 
-    def color_at(p: Any) -> Any:
+    def color_at(p: Any, _: Any) -> Any:
         si = dr.zeros(mi.SurfaceInteraction3f)
         si.p = mi.Point3f(p)
         return texture.eval(si)

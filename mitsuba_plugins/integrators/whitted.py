@@ -18,7 +18,20 @@ from mitsuba_plugins.integrators.geometry import parse_geometry
 from mitsuba_plugins.integrators.interactions import MitsubaSurfaces
 from mitsuba_plugins.integrators.mesh import MeshSurfaces
 from mitsuba_plugins.integrators.pace import Pace
-from mitsuba_plugins.integrators.rays import NOTHING, Hit, Ray, lanes, power, real, reflect, refract, start_ray, unit
+from mitsuba_plugins.integrators.rays import (
+    NOTHING,
+    Hit,
+    Ray,
+    lanes,
+    mirrored_spread,
+    power,
+    real,
+    reflect,
+    refract,
+    start_ray,
+    unit,
+)
+from mitsuba_plugins.integrators.rounding import coordinate_errors, input_error, least_spread
 from mitsuba_plugins.integrators.stack import RayStack
 from mitsuba_plugins.integrators.tables import Finish, Illumination, Lights, Materials
 
@@ -148,6 +161,9 @@ class Whitted(mi.SamplingIntegrator):
         contacts = Contacts(self.surfaces)
         self._light_contacts = LightContacts(self.types, contacts, self._lights.positions)
         self._eye_contact = EyeContact(self.types, contacts, np.ravel(sensor.eye)) if hasattr(sensor, "eye") else None
+        self._eye_error = dr.opaque(
+            self.types.Float, max(map(input_error, np.ravel(getattr(sensor, "eye", 0)).tolist()))
+        )
         if self.intersections == "analytic":
             self._tracer = AnalyticSurfaces(self.types, self.surfaces, records, self._light_contacts)
         elif self.intersections == "bvh":
@@ -167,10 +183,16 @@ class Whitted(mi.SamplingIntegrator):
         """The first surface that a ray meets."""
         return self._tracer.closest(ray, active)
 
-    def material(self, hit: Hit):
+    def material(self, ray: Ray, hit: Hit):
         """The finish and the pigment's colour at a hit."""
         finish = self._materials.finish(hit.object, hit.valid)
-        return finish, self._materials.color(hit.object, hit.p, hit.valid)
+        return finish, self._materials.color(hit.object, hit.p, self._errors(ray, hit), hit.valid)
+
+    def _errors(self, ray: Ray, hit: Hit):
+        """How far the coordinates of a hit may be off, or None where no pigment asks."""
+        if not self._materials.has_edges:
+            return None
+        return coordinate_errors(hit.p, hit.n, ray.d, hit.t, self._tracer.error(ray, hit))
 
     def light(self, index, ray: Ray, hit: Hit, finish: Finish, color, active) -> Illumination:
         """What one light, by its index, adds at a hit."""
@@ -180,7 +202,8 @@ class Whitted(mi.SamplingIntegrator):
         to_light = to_light * quotient(1, distance)
         n = dr.select(hit.inside, -hit.n, hit.n)
         cosine = dr.dot(n, to_light)
-        facing = active & (cosine > 0) & ~self._light_contacts.grazes(index, hit.record, active)
+        # A surface is not lit along itself.
+        facing = active & (cosine > least_spread(cosine)) & ~self._light_contacts.grazes(index, hit.record, active)
         blocker = self._tracer.blocker(hit, to_light, distance, index, facing)
         attenuation = a + distance * (b + distance * c)
         # Masked at the end: a light at the hit itself has no direction, and nothing times no number is no number.
@@ -198,14 +221,15 @@ class Whitted(mi.SamplingIntegrator):
 
     def reflected(self, ray: Ray, hit: Hit) -> Ray:
         """The mirrored ray."""
-        return self._tracer.spawn(hit, reflect(ray.d, hit.n), hit.inside)
+        return self._tracer.spawn(hit, reflect(ray.d, hit.n), hit.inside, mirrored_spread(ray, hit))
 
     def transmitted(self, ray: Ray, hit: Hit, eta) -> tuple[Ray, Any]:
         """The refracted ray, or the mirrored one past the critical angle, and whether it is past."""
         eta = dr.select(hit.inside, quotient(1, eta), eta)
         n = dr.select(hit.inside, -hit.n, hit.n)
-        d, total = refract(ray.d, n, eta)
-        return self._tracer.spawn(hit, d, hit.inside == total), total
+        d, total, spread = refract(ray.d, n, eta, ray.spread + hit.lean)
+        spread = dr.select(total, mirrored_spread(ray, hit), spread)
+        return self._tracer.spawn(hit, d, hit.inside == total, spread), total
 
     # ------------------------------------------------------------------ the ray tree
 
@@ -225,7 +249,7 @@ class Whitted(mi.SamplingIntegrator):
         stack = RayStack(self.types, self.stack_size if self.branching else 0)
         while active:
             hit = self.closest(ray, active)
-            finish, color = self.material(hit)
+            finish, color = self.material(ray, hit)
             local = self._local_radiance(ray, hit, finish, color)
             radiance += mi.Float(weight) * dr.select(hit.valid, local, self.background)
 
@@ -364,7 +388,7 @@ class Whitted(mi.SamplingIntegrator):
     def primary_ray(self, sensor, position) -> Ray:
         """The ray through a film position (Point2d, in pixels), in double precision where the sensor has it."""
         if hasattr(sensor, "primary_ray"):
-            ray = start_ray(self.types, *sensor.primary_ray(position))
+            ray = start_ray(self.types, *sensor.primary_ray(position), self._eye_error)
             return ray if self._eye_contact is None else self._eye_contact.start(ray)
         size, offset = sensor.film().crop_size(), sensor.film().crop_offset()
         sample = mi.Point2f(quotient(position - mi.Point2d(offset), mi.Point2d(size)))
