@@ -90,7 +90,7 @@ class BvhSurfaces(ExactSurfaces):
             tested = searching & (index != NOTHING)
             if tested:
                 t, record, near_tie = self._intersect(ray, index, tested, reach)
-                close |= tested & near_tie
+                close |= tested & (near_tie | (t <= most_blur(t) * reach))
                 # Of surfaces at the same distance the first counts.
                 ties = (t == t_best) & (object_best != NOTHING) & (index < object_best)
                 closer = tested & ((t < t_best) | ties)
@@ -121,7 +121,8 @@ class BvhSurfaces(ExactSurfaces):
                 walking &= (index == NOTHING) & (node < end)
             searching &= index != NOTHING
         if dr.hint(light is None, mode="scalar"):
-            close |= t_second - t_best <= most_blur(t_best) * (t_best + reach)
+            near = most_blur(t_best) * (t_best + reach)
+            close |= (t_second - t_best <= near) | (t_best <= near)
         return t_best, object_best, record_best, close
 
     def _intersect(self, ray: Ray, index: Any, active: Any, reach: Any) -> tuple[Any, Any, Any]:

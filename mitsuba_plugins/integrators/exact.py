@@ -159,6 +159,11 @@ class ExactSurfaces:
 
         error = ray.t_min + surface_error(sphere, v, w, reach)
         t_sphere, _ = sphere_distance(v, w, ray, own, error)
+        # A ray that starts on a sphere by the roundings of its origin, and not by knowledge, does not meet it there.
+        starts = ~own & (dr.abs(dr.norm(ray.o - v) - w) <= error)
+        through = -2 * dr.dot(ray.o - v, ray.d)
+        t_through = dr.select((t_sphere < dr.inf) & (through > ray.t_min), through, dr.inf)
+        t_sphere = dr.select(starts, t_through, t_sphere)
         arm = ray.o + t_sphere * ray.d - v
         t_sphere_error = quotient((error + t_sphere * ray.spread) * w, dr.abs(dr.dot(arm, ray.d)))
 

@@ -40,7 +40,7 @@ class MeshSurfaces(ExactSurfaces):
         self._extent = column(types.Float, [_extent(surface) for surface in surfaces])
 
     def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any, Any]:
-        """Distance (infinite for none), object (NOTHING for none) and record of the first hit; no ties are looked for."""
+        """Distance (infinite for none), object (NOTHING for none) and record of the first hit. Looks for no ties."""
         return *self._search(ray, self._types.Float(dr.inf), None, active), None
 
     def find_blocker(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any]:

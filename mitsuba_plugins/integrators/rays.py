@@ -73,10 +73,10 @@ def ray_reach(ray: Ray) -> Any:
     return quotient(ray.t_min, ERROR_BOUND * dr.epsilon(ray.t_min))
 
 
-def start_ray(types: Real, o: Any, d: Any, error: Any = 0) -> Ray:
+def start_ray(types: Real, o: Any, d: Any, error: Any = 0, spread: Any = 0) -> Ray:
     """A ray that starts on no surface, at full width, as Dr.Jit's loops and local buffers want it.
 
-    Its origin may be off by `error`.
+    Its origin may be off by `error`, and its direction by `spread` besides its roundings.
     """
     width = dr.width(d)
     return Ray(
@@ -86,7 +86,7 @@ def start_ray(types: Real, o: Any, d: Any, error: Any = 0) -> Ray:
         record=dr.full(mi.UInt32, NOTHING, width),
         inside=dr.full(mi.Bool, False, width),
         t_min=dr.zeros(types.Float, width) + error,
-        spread=dr.full(types.Float, least_spread(types.Float), width),
+        spread=dr.full(types.Float, least_spread(types.Float), width) + spread,
     )
 
 
@@ -141,11 +141,12 @@ def refract(d: Any, n: Any, eta: Any, error: Any = 0) -> tuple[Any, Any, Any]:
     cosine = -dr.dot(d, n)
     # 1 - eta^2 (1 - cosine^2), without the difference of nearly equal numbers where eta is nearly 1.
     cosine2 = (1 - eta) * (1 + eta) + dr.square(eta * cosine)
-    through = d * eta + n * (eta * cosine - dr.sqrt(dr.maximum(cosine2, 0)))
-    length = dr.norm(through)
     rounding = 4 * epsilon(cosine)
     critical = eta * eta * (2 * cosine * error + rounding) + rounding
-    total = ~((cosine2 >= -critical) & (length > 0))  # of a ratio beyond all measure these may be no numbers, or 0
+    cosine2 = dr.select(dr.abs(cosine2) <= critical, 0, cosine2)
+    through = d * eta + n * (eta * cosine - dr.sqrt(dr.maximum(cosine2, 0)))
+    length = dr.norm(through)
+    total = ~((cosine2 >= 0) & (length > 0))  # of a ratio beyond all measure these may be no numbers, or 0
     steepest = quotient(2 * dr.square(1 + eta), dr.maximum(dr.sqrt(dr.maximum(cosine2, 0)), most_blur(cosine)))
     spread = dr.minimum(error * steepest + least_spread(cosine), most_blur(cosine))
     return dr.select(total, reflect(d, n), through * quotient(1, length)), total, spread

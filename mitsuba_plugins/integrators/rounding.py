@@ -13,6 +13,7 @@ import math
 from typing import Any
 
 import drjit as dr
+import numpy as np
 
 from mitsuba_plugins.arithmetic import quotient
 
@@ -35,6 +36,16 @@ def most_blur(number: Any) -> float:
 def input_error(number: float) -> float:
     """Of a number in a file: a whole one is meant as it stands, any other is a decimal that was rounded to a double."""
     return 0.0 if number == math.floor(number) else 2.0**-52 * abs(number)
+
+
+def camera_errors(types: Any, sensor: Any) -> tuple[Any, Any]:
+    """How far the eye of a `pinhole` may be off, and the directions from it besides their roundings (Float)."""
+    if not hasattr(sensor, "eye"):
+        return types.Float(0), types.Float(0)
+    eye, look_at = (np.ravel(point).tolist() for point in (sensor.eye, sensor.look_at))
+    error, other = (max(map(input_error, point)) for point in (eye, look_at))
+    spread = min((error + other) / math.dist(eye, look_at), most_blur(types.Float))
+    return dr.opaque(types.Float, error), dr.opaque(types.Float, spread)
 
 
 def surface_error(sphere: Any, v: Any, w: Any, reach: Any) -> Any:

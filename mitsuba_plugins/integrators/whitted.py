@@ -24,6 +24,7 @@ from mitsuba_plugins.integrators.rays import (
     Ray,
     lanes,
     mirrored_spread,
+    origin_error,
     power,
     real,
     reflect,
@@ -31,7 +32,7 @@ from mitsuba_plugins.integrators.rays import (
     start_ray,
     unit,
 )
-from mitsuba_plugins.integrators.rounding import coordinate_errors, input_error, least_spread
+from mitsuba_plugins.integrators.rounding import camera_errors, coordinate_errors, least_spread
 from mitsuba_plugins.integrators.stack import RayStack
 from mitsuba_plugins.integrators.tables import Finish, Illumination, Lights, Materials
 
@@ -161,9 +162,7 @@ class Whitted(mi.SamplingIntegrator):
         contacts = Contacts(self.surfaces)
         self._light_contacts = LightContacts(self.types, contacts, self._lights.positions)
         self._eye_contact = EyeContact(self.types, contacts, np.ravel(sensor.eye)) if hasattr(sensor, "eye") else None
-        self._eye_error = dr.opaque(
-            self.types.Float, max(map(input_error, np.ravel(getattr(sensor, "eye", 0)).tolist()))
-        )
+        self._errors_of_primary_rays = camera_errors(self.types, sensor)
         if self.intersections == "analytic":
             self._tracer = AnalyticSurfaces(self.types, self.surfaces, records, self._light_contacts)
         elif self.intersections == "bvh":
@@ -202,8 +201,11 @@ class Whitted(mi.SamplingIntegrator):
         to_light = to_light * quotient(1, distance)
         n = dr.select(hit.inside, -hit.n, hit.n)
         cosine = dr.dot(n, to_light)
-        # A surface is not lit along itself.
-        facing = active & (cosine > least_spread(cosine)) & ~self._light_contacts.grazes(index, hit.record, active)
+        # A surface is not lit along itself, nor by a light at the very point.
+        apart = distance > origin_error(hit.p, hit.t)
+        facing = (
+            active & (cosine > least_spread(cosine)) & apart & ~self._light_contacts.grazes(index, hit.record, active)
+        )
         blocker = self._tracer.blocker(hit, to_light, distance, index, facing)
         attenuation = a + distance * (b + distance * c)
         # Masked at the end: a light at the hit itself has no direction, and nothing times no number is no number.
@@ -388,7 +390,7 @@ class Whitted(mi.SamplingIntegrator):
     def primary_ray(self, sensor, position) -> Ray:
         """The ray through a film position (Point2d, in pixels), in double precision where the sensor has it."""
         if hasattr(sensor, "primary_ray"):
-            ray = start_ray(self.types, *sensor.primary_ray(position), self._eye_error)
+            ray = start_ray(self.types, *sensor.primary_ray(position), *self._errors_of_primary_rays)
             return ray if self._eye_contact is None else self._eye_contact.start(ray)
         size, offset = sensor.film().crop_size(), sensor.film().crop_offset()
         sample = mi.Point2f(quotient(position - mi.Point2d(offset), mi.Point2d(size)))

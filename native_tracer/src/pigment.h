@@ -29,8 +29,8 @@ struct Solid {
     Color<Lanes<Real>> at() const { return Color<Lanes<Real>>(color); }
 };
 
-// Cubes of edge `size`, `first` where floor(x/s) + floor(y/s) + floor(z/s) is even. A coordinate that is a whole number of
-// edges but for its error is that number.
+// Cubes of edge `size`, `first` where floor(x/s) + floor(y/s) + floor(z/s) is even. A coordinate that is a whole number
+// of edges but for its error is that number.
 template <typename Real>
 struct Checker {
     Color<Real> first, second;
@@ -52,8 +52,8 @@ struct Checker {
 };
 
 // An image projected through space: s = p0 . (x, y, z, 1) runs along its columns, r = p1 . (x, y, z, 1) along its rows,
-// 1 is the whole image, and the image repeats. Nearest texel: column trunc(s W) mod W, plus W if negative, where s W that
-// is a whole number but for its error is that number.
+// 1 is the whole image, and the image repeats. Nearest texel: column trunc(s W) mod W, plus W if negative, where s W
+// that is a whole number but for its error is that number.
 template <typename Real>
 struct Texmap {
     int width, height;

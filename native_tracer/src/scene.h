@@ -72,10 +72,10 @@ struct EyeContact {
     std::vector<Vector<Real>> outward;  // of all the object's patches that the eye lies on
 
     // Rays along a surface, too, for a body is closed.
-    Mask<Real> leads_inside(const Vector<Lanes<Real>>& direction) const {
+    Mask<Real> leads_inside(const Vector<Lanes<Real>>& direction, Real spread) const {
         Mask<Real> result = outward.empty() ? Mask<Real>::none() : ~Mask<Real>::none();
         for (const Vector<Real>& normal : outward) {
-            result &= dot(Vector<Lanes<Real>>(normal), direction) <= Lanes<Real>(least_spread<Real>);
+            result &= dot(Vector<Lanes<Real>>(normal), direction) <= Lanes<Real>(spread);
         }
         return result;
     }
@@ -157,18 +157,21 @@ struct Scene {
         const auto may_hit = [&](int sphere) {
             return !view || any((*view)[static_cast<std::size_t>(sphere)].may_be_hit(rays.direction));
         };
-        for_each_crossing<Ties::found>(rays, limit, close, may_hit, [&](Indices<Real> object, const Crossing<Real>& crossing) {
-            const Mask<Real> nearer = (crossing.t < hits.t) | ((crossing.t <= hits.t) & (object < hits.object));
-            second = min(second, max(crossing.t, hits.t));
-            hits.t = select(nearer, crossing.t, hits.t);
-            hits.object = select(nearer, object, hits.object);
-            hits.patch = select(nearer, crossing.patch, hits.patch);
-            hits.inside = select(nearer, crossing.inside, hits.inside);
-            limit = min(hits.t, limit);
-            return true;
-        });
+        for_each_crossing<Ties::found>(
+            rays, limit, close, may_hit, [&](Indices<Real> object, const Crossing<Real>& crossing) {
+                const Mask<Real> nearer = (crossing.t < hits.t) | ((crossing.t <= hits.t) & (object < hits.object));
+                // What is met at the same distance exactly is decided already.
+                const Mask<Real> apart = crossing.t != hits.t;
+                second = min(second, select(apart, max(crossing.t, hits.t), second));
+                hits.t = select(nearer, crossing.t, hits.t);
+                hits.object = select(nearer, object, hits.object);
+                hits.patch = select(nearer, crossing.patch, hits.patch);
+                hits.inside = select(nearer, crossing.inside, hits.inside);
+                limit = min(hits.t, limit);
+                return true;
+            });
         const Lanes<Real> range = Lanes<Real>(most_blur<Real>) * (hits.t + rays.reach);
-        close |= second - hits.t <= range;
+        close |= (second - hits.t <= range) | (hits.t <= range);
         close &= wanted;
         if (any(close)) [[unlikely]] {
             const Hits<Real> settled = nearest_hit_by_rules(rays, close);
@@ -203,16 +206,18 @@ struct Scene {
         Hits<Real> hits;
         Lanes<Real> limit = select(wanted, hits.t, Lanes<Real>(Real(-1)));
         Mask<Real> close = wanted;
-        for_each_crossing<Ties::decided>(rays, limit, close, [](int) { return true; }, [&](Indices<Real> object, const Crossing<Real>& crossing) {
-            const Mask<Real> ties = tie(rays, hits, crossing);
-            const Mask<Real> nearer = select(ties, object < hits.object, crossing.t < hits.t);
-            hits.t = select(nearer, crossing.t, hits.t);
-            hits.object = select(nearer, object, hits.object);
-            hits.patch = select(nearer, crossing.patch, hits.patch);
-            hits.inside = select(nearer, crossing.inside, hits.inside);
-            limit = min(hits.t, limit);
-            return true;
-        });
+        for_each_crossing<Ties::decided>(
+            rays, limit, close, [](int) { return true; },
+            [&](Indices<Real> object, const Crossing<Real>& crossing) {
+                const Mask<Real> ties = tie(rays, hits, crossing);
+                const Mask<Real> nearer = select(ties, object < hits.object, crossing.t < hits.t);
+                hits.t = select(nearer, crossing.t, hits.t);
+                hits.object = select(nearer, object, hits.object);
+                hits.patch = select(nearer, crossing.patch, hits.patch);
+                hits.inside = select(nearer, crossing.inside, hits.inside);
+                limit = min(hits.t, limit);
+                return true;
+            });
         hits.patch = Indices<Real>::gather([&](int lane) {
             return wanted[lane] && hits.object[lane] >= 0 ? piece_met(rays, hits, lane) : hits.patch[lane];
         });
@@ -256,13 +261,16 @@ struct Scene {
         const Lanes<Real> nowhere = Real(-1);
         Lanes<Real> limit = select(open, distance, nowhere);
         const auto may_block = [&](int sphere) { return may_hit(sphere, open); };
-        for_each_crossing<ties>(rays, limit, close, may_block, [&](Indices<Real> object, const Crossing<Real>& crossing) {
-            const Mask<Real> blocked = open & (crossing.t < distance) & ~light.lies_at(crossing, rays.direction);
-            blocker = select(blocked, object, blocker);
-            open &= ~blocked;
-            limit = select(open, limit, nowhere);
-            return any(open);
-        });
+        const Lanes<Real> range = Lanes<Real>(most_blur<Real>) * rays.reach;
+        for_each_crossing<ties>(
+            rays, limit, close, may_block, [&](Indices<Real> object, const Crossing<Real>& crossing) {
+                close |= crossing.t <= range;
+                const Mask<Real> blocked = open & (crossing.t < distance) & ~light.lies_at(crossing, rays.direction);
+                blocker = select(blocked, object, blocker);
+                open &= ~blocked;
+                limit = select(open, limit, nowhere);
+                return any(open);
+            });
         return blocker;
     }
 
@@ -300,7 +308,13 @@ struct Scene {
         Crossing<Real> crossing;
         const auto cross_sphere = [&](int sphere) __attribute__((always_inline)) {
             const Sphere<Real>& s = spheres[static_cast<std::size_t>(sphere)];
-            return !find_crossing(s, rays, crossing) || visit(s.object, crossing);
+            if (!find_crossing(s, rays, crossing)) {
+                return true;
+            }
+            if constexpr (ties == Ties::decided) {
+                decide_start(s, rays, crossing);
+            }
+            return visit(s.object, crossing);
         };
         const auto cross_polyhedra = [&](int polyhedron, int end) __attribute__((always_inline)) {
             for (; polyhedron < end; ++polyhedron) {
@@ -360,7 +374,7 @@ template <typename Real>
 Patch<Real> sphere_of(const SphereDescription& sphere) {
     const Vector<Real> center = vector_of<Real>(sphere.center);
     const Real radius = static_cast<Real>(sphere.radius);
-    const Real error = input_error(radius) + std::max({input_error(center.x), input_error(center.y), input_error(center.z)});
+    const Real error = input_error(radius) + input_error_of_point<Real>(sphere.center);
     return {center, radius, true, error, 0, 1 / radius};
 }
 

@@ -212,8 +212,9 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
         const L distance = length(path);
         const Vector<L> to_light = path * (one / distance);
         const L cosine = dot(surface.normal, to_light);
-        // A surface is not lit along itself.
-        const Mask<Real> faces = answers & (cosine > L(least_spread<Real>)) & ~light.grazes(hits.patch);
+        // A surface is not lit along itself, nor by a light at the very point.
+        const Mask<Real> faces =
+            answers & (cosine > L(least_spread<Real>)) & (distance > surface.error) & ~light.grazes(hits.patch);
 
         Indices<Real> blocker = -1;
         if (any(faces)) {
@@ -273,8 +274,7 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
     const L cosine = -dot(direction, surface.normal);
     const Vector<L> mirrored = normalize(direction + L(2) * cosine * surface.normal);
 
-    const L mirrored_spread =
-        min(group.rays.spread + L(2) * surface.lean + L(least_spread<Real>), L(most_blur<Real>));
+    const L mirrored_spread = min(group.rays.spread + L(2) * surface.lean + L(least_spread<Real>), L(most_blur<Real>));
 
     Vector<L> bent = mirrored;
     Mask<Real> bent_inside = hits.inside;
@@ -283,20 +283,22 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
         // Snell's law, with the ratio of the index on the ray's side to the index on the other: n1/n2 on the way in,
         // n2/n1 on the way out. Where it has no answer, the transmitted ray follows the mirror direction.
         const L eta = select(hits.inside, one / surface.eta, surface.eta);
-        // 1 - eta^2 (1 - cosine^2), without the difference of nearly equal numbers where eta is nearly 1.
-        const L cosine2 = (one - eta) * (one + eta) + eta * cosine * (eta * cosine);
+        // 1 - eta^2 (1 - cosine^2), without the difference of nearly equal numbers where eta is nearly 1. Where it is 0
+        // but for its error the ray is refracted along the surface.
+        const L exact_cosine2 = (one - eta) * (one + eta) + eta * cosine * (eta * cosine);
+        const L cosine_error = group.rays.spread + surface.lean;
+        const L rounding = L(4 * tie_epsilon<Real>);
+        const L critical = eta * eta * (L(2) * cosine * cosine_error + rounding) + rounding;
+        const L cosine2 = select(abs(exact_cosine2) <= critical, zero, exact_cosine2);
         const Vector<L> refracted = eta * direction + (eta * cosine - sqrt(max(cosine2, zero))) * surface.normal;
         const L length2 = dot(refracted, refracted);
         // Of a ratio beyond all measure these may be no numbers, or 0.
-        const L cosine_error = group.rays.spread + surface.lean;
-        const L critical = eta * eta * (L(2) * cosine * cosine_error + L(4 * tie_epsilon<Real>)) +
-                           L(4 * tie_epsilon<Real>);
-        const Mask<Real> total = ~((cosine2 >= -critical) & (length2 > zero));
+        const Mask<Real> total = ~((cosine2 >= zero) & (length2 > zero));
         bent = select(total, mirrored, refracted * (one / sqrt(length2)));
         bent_inside = select(total, hits.inside, ~hits.inside);
         const L steepest = L(2) * (one + eta) * (one + eta) / max(sqrt(max(cosine2, zero)), L(most_blur<Real>));
-        bent_spread = select(total, mirrored_spread,
-                             min(cosine_error * steepest + L(least_spread<Real>), L(most_blur<Real>)));
+        bent_spread =
+            select(total, mirrored_spread, min(cosine_error * steepest + L(least_spread<Real>), L(most_blur<Real>)));
         observer_.total_reflection(group, transmits & total);
     }
 
