@@ -124,7 +124,8 @@ class ExactSurfaces:
             while close & (tested < self.records.surface_count):
                 met, met_error, met_record = self._meet(ray, tested, close)
                 # Objects come in their order: of those at the same distance the first counts.
-                nearer = (met < t) & ~(t - met <= error + met_error)
+                ties = (t < dr.inf) & (t - met <= error + met_error)
+                nearer = (met < t) & ~ties
                 t = dr.select(nearer, met, t)
                 error = dr.select(nearer, met_error, error)
                 index = dr.select(nearer, tested, index)
@@ -160,7 +161,7 @@ class ExactSurfaces:
         error = ray.t_min + surface_error(sphere, v, w, reach)
         t_sphere, _ = sphere_distance(v, w, ray, own, error)
         # A ray that starts on a sphere by the roundings of its origin, and not by knowledge, does not meet it there.
-        starts = ~own & (dr.abs(dr.norm(ray.o - v) - w) <= error)
+        starts = ~own & (dr.abs(dr.norm(ray.o - v) - w) <= error) & (error <= most_blur(w) * w)
         through = -2 * dr.dot(ray.o - v, ray.d)
         t_through = dr.select((t_sphere < dr.inf) & (through > ray.t_min), through, dr.inf)
         t_sphere = dr.select(starts, t_through, t_sphere)
@@ -208,8 +209,9 @@ class ExactSurfaces:
 
 
 def sphere_distance(center: Any, radius: Any, ray: Ray, own: Any, error: Any = None) -> tuple[Any, Any]:
-    """Distance to a sphere, infinite or NaN for none (compare with <); `own` where the ray starts on it. And whether the
-    ray may only touch it; it does, and passes by, where that is due to the `error` of sphere and origin, if given.
+    """Distance to a sphere, infinite or NaN for none (compare with <), and whether the ray may only touch it.
+
+    `own` where the ray starts on it. Given the `error` of both, rays that only touch it pass by.
 
     Haines, Gunther and Akenine-Moller, Precision Improvements for Ray/Sphere Intersection, Ray Tracing Gems ch. 7.
     """

@@ -40,10 +40,6 @@ class MitsubaSurfaces:
         """The ray that leaves `hit` in direction `d`."""
         return Ray(self._offset(hit, d), d, hit.object, hit.record, inside, mi.Float(0), spread)
 
-    def error(self, ray: Ray, hit: Hit) -> Any:
-        """How far a ray and the surface that it has met may be off from one another."""
-        return hit.t * ray.spread
-
     def blocker(self, hit: Hit, d: Any, distance: Any, light: Any, active: Any) -> Any:
         """The first object between `hit` and a light at `distance` in direction `d`, or NOTHING."""
         origin = self._offset(hit, d)

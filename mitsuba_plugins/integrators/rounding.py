@@ -19,8 +19,8 @@ from mitsuba_plugins.arithmetic import quotient
 
 
 def epsilon(number: Any) -> float:
-    """The distance from 1 to the next number, of `number`'s type."""
-    return 2 * float(dr.epsilon(number))
+    """The unit of the bounds: the distance from 1 to the next double. 0 in single precision, which decides no ties."""
+    return 2.0**-52 if dr.type_v(number) == dr.VarType.Float64 else 0.0
 
 
 def least_spread(number: Any) -> float:
@@ -29,8 +29,8 @@ def least_spread(number: Any) -> float:
 
 
 def most_blur(number: Any) -> float:
-    """About the square root of epsilon."""
-    return 2.0**-26 if dr.type_v(number) == dr.VarType.Float64 else 2.0**-12
+    """The square root of epsilon."""
+    return math.sqrt(epsilon(number))
 
 
 def input_error(number: float) -> float:
@@ -81,5 +81,5 @@ def coordinate_errors(p: Any, n: Any, d: Any, t: Any, off: Any) -> Any:
     """
     rounding = 2 * epsilon(t)
     reach = dr.maximum(dr.maximum(dr.abs(p.x), dr.abs(p.y)), dr.abs(p.z))
-    blur = rounding * reach + dr.minimum(quotient(off, dr.abs(dr.dot(n, d))), most_blur(t) * (reach + t))
+    blur = rounding * reach + dr.fmin(quotient(off, dr.abs(dr.dot(n, d))), most_blur(t) * (reach + t))
     return type(n)(*(dr.select(dr.abs(a) < 1, blur, rounding * dr.abs(x)) for a, x in zip(n, p, strict=True)))

@@ -23,8 +23,8 @@ from mitsuba_plugins.integrators.rays import (
     Hit,
     Ray,
     lanes,
+    largest,
     mirrored_spread,
-    origin_error,
     power,
     real,
     reflect,
@@ -32,7 +32,7 @@ from mitsuba_plugins.integrators.rays import (
     start_ray,
     unit,
 )
-from mitsuba_plugins.integrators.rounding import camera_errors, coordinate_errors, least_spread
+from mitsuba_plugins.integrators.rounding import camera_errors, coordinate_errors, epsilon, least_spread, most_blur
 from mitsuba_plugins.integrators.stack import RayStack
 from mitsuba_plugins.integrators.tables import Finish, Illumination, Lights, Materials
 
@@ -188,9 +188,9 @@ class Whitted(mi.SamplingIntegrator):
         return finish, self._materials.color(hit.object, hit.p, self._errors(ray, hit), hit.valid)
 
     def _errors(self, ray: Ray, hit: Hit):
-        """How far the coordinates of a hit may be off, or None where no pigment asks."""
-        if not self._materials.has_edges:
-            return None
+        """How far the coordinates of a hit may be off, where a pigment asks."""
+        if not self._materials.has_edges or self.intersections in ("offset", "ulp"):
+            return self.types.Vector3(0)
         return coordinate_errors(hit.p, hit.n, ray.d, hit.t, self._tracer.error(ray, hit))
 
     def light(self, index, ray: Ray, hit: Hit, finish: Finish, color, active) -> Illumination:
@@ -202,7 +202,7 @@ class Whitted(mi.SamplingIntegrator):
         n = dr.select(hit.inside, -hit.n, hit.n)
         cosine = dr.dot(n, to_light)
         # A surface is not lit along itself, nor by a light at the very point.
-        apart = distance > origin_error(hit.p, hit.t)
+        apart = distance > 8 * epsilon(distance) * largest(hit.p)
         facing = (
             active & (cosine > least_spread(cosine)) & apart & ~self._light_contacts.grazes(index, hit.record, active)
         )
@@ -229,7 +229,7 @@ class Whitted(mi.SamplingIntegrator):
         """The refracted ray, or the mirrored one past the critical angle, and whether it is past."""
         eta = dr.select(hit.inside, quotient(1, eta), eta)
         n = dr.select(hit.inside, -hit.n, hit.n)
-        d, total, spread = refract(ray.d, n, eta, ray.spread + hit.lean)
+        d, total, spread = refract(ray.d, n, eta, dr.minimum(ray.spread + hit.lean, most_blur(ray.spread)))
         spread = dr.select(total, mirrored_spread(ray, hit), spread)
         return self._tracer.spawn(hit, d, hit.inside == total, spread), total
 

@@ -26,8 +26,13 @@ namespace whitted::WHITTED_ISA {
 
 // The numbers of a file are rounded to double before any precision sees them.
 template <typename Real>
-inline constexpr Real tie_epsilon = static_cast<Real>(
+inline constexpr Real input_epsilon = static_cast<Real>(
     std::max<long double>(std::numeric_limits<Real>::epsilon(), std::numeric_limits<double>::epsilon()));
+
+// The unit of the bounds by which ties are decided. In single precision they would be seen in pictures: it decides
+// none.
+template <typename Real>
+inline constexpr Real tie_epsilon = sizeof(Real) == sizeof(float) ? Real(0) : input_epsilon<Real>;
 
 // Of a unit vector's component and of its products with others, some sixteen roundings.
 template <typename Real>
@@ -35,7 +40,7 @@ inline constexpr Real least_spread = 16 * tie_epsilon<Real>;
 
 // The square root of epsilon.
 template <typename Real>
-inline constexpr Real most_blur = sizeof(Real) == sizeof(float) ? Real(0x1p-12) : Real(0x1p-26);
+inline constexpr Real most_blur = sizeof(Real) == sizeof(float) ? Real(0) : Real(0x1p-26);
 
 // Of a number in a file: a whole one is meant as it stands, any other is a decimal that was rounded.
 template <typename Real>

@@ -125,7 +125,10 @@ template <typename Real>
 void decide_start(const Sphere<Real>& sphere, const Rays<Real>& rays, Crossing<Real>& crossing) {
     using L = Lanes<Real>;
     const Vector<L> g = Vector<L>(sphere.center) - rays.origin;
-    const Mask<Real> starts = (abs(length(g) - L(sphere.radius)) <= rays.t_min + L(sphere.error)) &
+    // Of a sphere smaller than such errors nothing is known.
+    const L error = rays.t_min + L(sphere.error);
+    const Mask<Real> starts = (abs(length(g) - L(sphere.radius)) <= error) &
+                              (error <= L(most_blur<Real>) * L(sphere.radius)) &
                               ~(rays.object == Indices<Real>(sphere.object));
     const L through = L(2) * dot(g, rays.direction);
     const Mask<Real> crosses = (through > rays.t_min) & (crossing.t < L(std::numeric_limits<Real>::infinity()));

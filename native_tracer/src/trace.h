@@ -206,6 +206,7 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
     // Shadow rays start on the viewer's side of the surface, as the reflected ray does.
     Rays<Real> shadow_rays{surface.point, surface.normal, surface.error,         hits.object,
                            hits.patch,    hits.inside,    L(least_spread<Real>), reach_of(surface.error)};
+    const L point_error = L(8 * tie_epsilon<Real>) * max_norm(surface.point);
     for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
         const Light<Real>& light = scene_.lights[i];
         const Vector<L> path = Vector<L>(light.position) - surface.point;
@@ -214,7 +215,7 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
         const L cosine = dot(surface.normal, to_light);
         // A surface is not lit along itself, nor by a light at the very point.
         const Mask<Real> faces =
-            answers & (cosine > L(least_spread<Real>)) & (distance > surface.error) & ~light.grazes(hits.patch);
+            answers & (cosine > L(least_spread<Real>)) & (distance > point_error) & ~light.grazes(hits.patch);
 
         Indices<Real> blocker = -1;
         if (any(faces)) {
@@ -286,7 +287,7 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
         // 1 - eta^2 (1 - cosine^2), without the difference of nearly equal numbers where eta is nearly 1. Where it is 0
         // but for its error the ray is refracted along the surface.
         const L exact_cosine2 = (one - eta) * (one + eta) + eta * cosine * (eta * cosine);
-        const L cosine_error = group.rays.spread + surface.lean;
+        const L cosine_error = min(group.rays.spread + surface.lean, L(most_blur<Real>));
         const L rounding = L(4 * tie_epsilon<Real>);
         const L critical = eta * eta * (L(2) * cosine * cosine_error + rounding) + rounding;
         const L cosine2 = select(abs(exact_cosine2) <= critical, zero, exact_cosine2);
@@ -296,7 +297,7 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
         const Mask<Real> total = ~((cosine2 >= zero) & (length2 > zero));
         bent = select(total, mirrored, refracted * (one / sqrt(length2)));
         bent_inside = select(total, hits.inside, ~hits.inside);
-        const L steepest = L(2) * (one + eta) * (one + eta) / max(sqrt(max(cosine2, zero)), L(most_blur<Real>));
+        const L steepest = L(2) * (one + eta) * (one + eta) / sqrt(max(cosine2, zero));
         bent_spread =
             select(total, mirrored_spread, min(cosine_error * steepest + L(least_spread<Real>), L(most_blur<Real>)));
         observer_.total_reflection(group, transmits & total);
