@@ -351,6 +351,16 @@ def test_quantize_clamps_and_rounds_halves_up():
     assert native_tracer.quantize(memoryview(every)) == bytes(range(256))
 
 
+def test_quantize_takes_what_roundings_left_below_a_half_for_one():
+    """0.7 is 178.5 levels in the file, and a little less as a float32."""
+    halves = (np.arange(255) + 0.5) / 255
+    up, slack = bytes(range(1, 256)), 1e-4 / 255
+    for off in (0, 0.9 * slack, -0.9 * slack):
+        assert native_tracer.quantize((halves + off).astype(np.float32)) == up
+    assert native_tracer.quantize((halves - 1.1 * slack).astype(np.float32)) == bytes(range(255))
+    assert native_tracer.quantize(np.array([0.7, 0.1, 0.3, 0.5, 0.9], np.float32)) == bytes([179, 26, 77, 128, 230])
+
+
 def test_numpy_is_not_needed():
     code = """
 import sys, native_tracer

@@ -205,8 +205,12 @@ std::size_t count_nan_pixels(const Pixels& pixels) {
 
 // ---- Bytes --------------------------------------------------------------------------------------------------------
 
-// round(255 c) with c clamped to 0..1, halves up; a NaN is black. In double, where 255 c is exact. Block by block, so
-// that the compiler can compute several at once.
+// Colours that decimal numbers make are often halves of a level: 0.7 is 178.5. A half that roundings have left this
+// much below, in levels, is one still.
+constexpr double half_slack = 1e-4;
+
+// The nearest level to 255 c with c clamped to 0..1, halves up; a NaN is black. In double, where 255 c is exact. Block
+// by block, so that the compiler can compute several at once.
 void quantize(const float* values, std::size_t count, std::uint8_t* bytes) {
     constexpr std::size_t block = 1024;
     std::int32_t rounded[block];
@@ -215,7 +219,7 @@ void quantize(const float* values, std::size_t count, std::uint8_t* bytes) {
         for (std::size_t i = 0; i < size; ++i) {
             const float positive = values[first + i] > 0.0F ? values[first + i] : 0.0F;
             const float clamped = positive < 1.0F ? positive : 1.0F;
-            rounded[i] = static_cast<std::int32_t>(255.0 * static_cast<double>(clamped) + 0.5);
+            rounded[i] = static_cast<std::int32_t>(255.0 * static_cast<double>(clamped) + (0.5 + half_slack));
         }
         for (std::size_t i = 0; i < size; ++i) {
             bytes[first + i] = static_cast<std::uint8_t>(rounded[i]);
@@ -275,5 +279,6 @@ void bind_render(nb::module_& module) {
     module.def("count_nan_pixels", &count_nan_pixels, "pixels"_a,
                "How many pixels of a float32 buffer, three numbers each, have a NaN among them.");
     module.def("quantize", &quantized, "pixels"_a,
-               "8-bit RGB of a float32 buffer: round(255 c), c clamped to 0..1, a NaN black.");
+               "8-bit RGB of a float32 buffer: the nearest level to 255 c, c clamped to 0..1, a NaN black. Halves go up, also\n"
+               "those that roundings have left up to 1e-4 levels below.");
 }
