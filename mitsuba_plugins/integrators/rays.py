@@ -32,13 +32,14 @@ class Real:
     Point3: Any
     Vector3: Any
     Vector4: Any
+    Color3: Any
 
 
 def real(precision: str) -> Real:
     """The types of "double" or of single precision, "float"."""
     if precision == "double":
-        return Real(mi.Float64, mi.Point3d, mi.Vector3d, mi.Vector4d)
-    return Real(mi.Float, mi.Point3f, mi.Vector3f, mi.Vector4f)
+        return Real(mi.Float64, mi.Point3d, mi.Vector3d, mi.Vector4d, mi.Color3d)
+    return Real(mi.Float, mi.Point3f, mi.Vector3f, mi.Vector4f, mi.Color3f)
 
 
 @dataclass

@@ -1,4 +1,4 @@
-"""Recursive ray tracing after Whitted, with the course's shading model, in double precision where it matters."""
+"""Recursive ray tracing after Whitted, with the course's shading model, in double precision."""
 
 import math
 from contextlib import contextmanager
@@ -113,8 +113,8 @@ class Whitted(mi.SamplingIntegrator):
                 text = file.read()
         self._geometry = parse_geometry(text)
         self._bsdfs = Bsdfs(_materials(props, self.surfaces))
-        self.ambient = mi.Color3f(props.get("ambient", mi.ScalarColor3d(0.0)))
-        self.background = mi.Color3f(props.get("background", mi.ScalarColor3d(0.0)))
+        self.ambient = mi.Color3d(props.get("ambient", mi.ScalarColor3d(0.0)))
+        self.background = mi.Color3d(props.get("background", mi.ScalarColor3d(0.0)))
         self.max_depth = mi.UInt32(props.get("max_depth", 16))
         self.intersections = props.get("intersections", "auto")
         if self.intersections not in (*INTERSECTIONS, "auto"):
@@ -210,16 +210,16 @@ class Whitted(mi.SamplingIntegrator):
         attenuation = a + distance * (b + distance * c)
         # Masked at the end: a light at the hit itself has no direction, and nothing times no number is no number.
         lit = facing & (blocker == NOTHING)
-        irradiance = quotient(emission, mi.Float(attenuation))
-        diffuse = (irradiance * color * (finish.kd * mi.Float(cosine))) & lit
-        specular = mi.Color3f(0)
+        intensity = emission * quotient(1, attenuation)
+        diffuse = (finish.kd * cosine * color * intensity) & lit
+        specular = self.types.Color3(0)
         if self.highlights:
-            specular = (irradiance * (finish.ks * self._highlight(ray, n, to_light, finish.alpha))) & lit
+            specular = (finish.ks * self._highlight(ray, n, to_light, finish.alpha) * intensity) & lit
         return Illumination(cosine, attenuation, blocker, diffuse, specular)
 
     def _highlight(self, ray: Ray, n, to_light, alpha):
         cosine = dr.dot(n, unit(to_light - ray.d)) if self._materials.blinn else dr.dot(reflect(ray.d, n), to_light)
-        return mi.Float(power(dr.minimum(dr.maximum(cosine, 0), 1), alpha))  # what is rounded above 1 has no bounds
+        return power(dr.minimum(dr.maximum(cosine, 0), 1), alpha)  # what is rounded above 1 has no bounds
 
     def reflected(self, ray: Ray, hit: Hit) -> Ray:
         """The mirrored ray."""
@@ -237,13 +237,13 @@ class Whitted(mi.SamplingIntegrator):
 
     @dr.syntax
     def trace(self, ray: Ray, active):
-        """Radiance (Color3f) along rays: the whole tree below each, in one kernel.
+        """Radiance (Color3) along rays: the whole tree below each, in one kernel.
 
         Where a surface sends on two rays, the refracted one waits on a stack in local memory.
         """
         # Everything starts at full width: with an index of width 1, all SIMD lanes would share one stack.
         width = dr.width(ray.d)
-        radiance = dr.zeros(mi.Color3f, width)
+        radiance = dr.zeros(self.types.Color3, width)
         weight = dr.full(self.types.Float, 1, width)
         depth = dr.zeros(mi.UInt32, width)
         active = active & lanes(width)
@@ -253,7 +253,7 @@ class Whitted(mi.SamplingIntegrator):
             hit = self.closest(ray, active)
             finish, color = self.material(ray, hit)
             local = self._local_radiance(ray, hit, finish, color)
-            radiance += mi.Float(weight) * dr.select(hit.valid, local, self.background)
+            radiance += weight * dr.select(hit.valid, local, self.types.Color3(self.background))
 
             depth += 1
             follows = hit.valid & (depth <= self.max_depth)
@@ -290,7 +290,7 @@ class Whitted(mi.SamplingIntegrator):
 
     @dr.syntax
     def _local_radiance(self, ray: Ray, hit: Hit, finish: Finish, color):
-        radiance = finish.ka * self.ambient * color
+        radiance = finish.ka * self.types.Color3(self.ambient) * color
         if dr.hint(self.shadows, mode="scalar"):
             lit = hit.valid & (finish.kd + finish.ks > 0)
             light = dr.zeros(mi.UInt32, dr.width(ray.d))
@@ -306,7 +306,7 @@ class Whitted(mi.SamplingIntegrator):
         """Radiance along single-precision rays, of any sensor."""
         with self.prepared(scene):
             color = self.trace(start_ray(self.types, ray.o, unit(mi.Vector3d(ray.d))), active)
-        return color, mi.Bool(active), []
+        return mi.Color3f(color), mi.Bool(active), []
 
     def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
         """Draw a picture. The samples of a pixel lie on a regular grid: in the centres of n x n = `spp` cells."""
@@ -343,7 +343,7 @@ class Whitted(mi.SamplingIntegrator):
         first = 0
         while first < height:
             rows = min(height - first, pace.rows(width))
-            color = dr.opaque(mi.Color3f, 0, rows * width)  # so that the first launch needs no kernel of its own
+            color = dr.opaque(mi.Color3d, 0, rows * width)  # so that the first launch needs no kernel of its own
             done = 0
             while done < len(offsets):
                 count = min(len(offsets) - done, pace.samples(rows * width))
@@ -354,7 +354,7 @@ class Whitted(mi.SamplingIntegrator):
                 done += count
                 if progress is not None:
                     progress((first + rows * done / len(offsets)) / height)
-            yield first, quotient(color, len(offsets))
+            yield first, mi.Color3f(quotient(color, len(offsets)))
             first += rows
 
     @dr.syntax

@@ -40,14 +40,14 @@ class ProjectedBitmap(mi.Texture):
         dr.make_opaque(self.texels, self.to_s, self.to_r, self.height, self.width)
 
     def color_at(self, p, errors=0):
-        """Colour at a position of either precision, Point3d for exact texel boundaries.
+        """Colour (Color3d) at a position of either precision, Point3d for exact texel boundaries.
 
         A position that is a whole number of texels, but for the errors of the coordinates, is that number.
         """
         p, errors = mi.Vector3d(p), mi.Vector3d(errors)
         column = self._texel(self.to_s, p, errors, self.width)
         row = self._texel(self.to_r, p, errors, self.height)
-        return dr.gather(mi.Color3f, self.texels, row * mi.UInt32(self.width) + column)
+        return mi.Color3d(dr.gather(mi.Color3f, self.texels, row * mi.UInt32(self.width) + column))
 
     @classmethod
     def _texel(cls, projection, p, errors, count):
@@ -67,7 +67,7 @@ class ProjectedBitmap(mi.Texture):
         return mi.UInt32(dr.fmin(dr.fmax(remainder, 0), count - 1))
 
     def eval(self, si, active=True):
-        return self.color_at(si.p) & active
+        return mi.Color3f(self.color_at(si.p)) & active
 
     def eval_3(self, si, active=True):
         return self.eval(si, active)

@@ -30,13 +30,13 @@ class SolidChecker(mi.Texture):
 
     def __init__(self, props):
         mi.Texture.__init__(self, props)
-        self.first = mi.Color3f(props["first"])
-        self.second = mi.Color3f(props["second"])
+        self.first = mi.Color3d(props["first"])
+        self.second = mi.Color3d(props["second"])
         self.size = mi.Float64(props["size"])
         dr.make_opaque(self.first, self.second, self.size)
 
     def color_at(self, p, errors=0):
-        """Colour at a position of either precision: Point3d for exact boundaries between cubes.
+        """Colour (Color3d) at a position of either precision: Point3d for exact boundaries between cubes.
 
         A coordinate that is a whole number of edges, but for its error, is that number.
         """
@@ -48,7 +48,7 @@ class SolidChecker(mi.Texture):
         return dr.select(half == dr.floor(half), self.first, self.second)
 
     def eval(self, si, active=True):
-        return self.color_at(si.p) & active
+        return mi.Color3f(self.color_at(si.p)) & active
 
     def eval_3(self, si, active=True):
         return self.eval(si, active)
