@@ -24,8 +24,8 @@ def epsilon(number: Any) -> float:
 
 
 def least_spread(number: Any) -> float:
-    """Some sixteen roundings, of a unit vector's component and of its products with others."""
-    return 16 * epsilon(number)
+    """Some eight roundings, of a unit vector's component and of its products with others."""
+    return 4 * epsilon(number)
 
 
 def most_blur(number: Any) -> float:
@@ -79,7 +79,11 @@ def coordinate_errors(p: Any, n: Any, d: Any, t: Any, off: Any) -> Any:
         off: how far ray and surface may be off from one another; the point is, the more the ray slants.
 
     """
-    rounding = 2 * epsilon(t)
     reach = dr.maximum(dr.maximum(dr.abs(p.x), dr.abs(p.y)), dr.abs(p.z))
-    blur = rounding * reach + dr.fmin(quotient(off, dr.abs(dr.dot(n, d))), most_blur(t) * (reach + t))
-    return type(n)(*(dr.select(dr.abs(a) < 1, blur, rounding * dr.abs(x)) for a, x in zip(n, p, strict=True)))
+    along = dr.fmin(quotient(off, dr.abs(dr.dot(n, d))), most_blur(t) * (reach + t))
+
+    def error(coordinate: Any, normal: Any, slope: Any) -> Any:
+        rounding = 2 * epsilon(t) * dr.abs(coordinate)
+        return rounding + dr.select(dr.abs(normal) < 1, off + dr.abs(slope) * along, 0)
+
+    return type(n)(*map(error, p, n, d))

@@ -34,9 +34,9 @@ inline constexpr Real input_epsilon = static_cast<Real>(
 template <typename Real>
 inline constexpr Real tie_epsilon = sizeof(Real) == sizeof(float) ? Real(0) : input_epsilon<Real>;
 
-// Of a unit vector's component and of its products with others, some sixteen roundings.
+// Of a unit vector's component and of its products with others, some eight roundings.
 template <typename Real>
-inline constexpr Real least_spread = 16 * tie_epsilon<Real>;
+inline constexpr Real least_spread = 4 * tie_epsilon<Real>;
 
 // The square root of epsilon.
 template <typename Real>
