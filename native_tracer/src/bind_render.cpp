@@ -205,9 +205,9 @@ std::size_t count_nan_pixels(const Pixels& pixels) {
 
 // ---- Bytes --------------------------------------------------------------------------------------------------------
 
-// The nearest of 255 levels to c, clamped to 0..1, halves up, where a half is one also if roundings have left it a little
-// below: decimal numbers in files make halves common, and renderers must not differ in them. A NaN is black. In double,
-// where 255 c is exact. Block by block, so that the compiler can compute several at once.
+// The nearest of 255 levels to c, clamped to 0..1, halves up, where a half is one also if roundings have left it a
+// little below: decimal numbers in files make halves common, and renderers must not differ in them. A NaN is black. In
+// double, where 255 c is exact. Block by block, so that the compiler can compute several at once.
 void quantize(const float* values, std::size_t count, std::uint8_t* bytes) {
     constexpr std::size_t block = 1024;
     constexpr double half = 0.5 + 1e-4;  // of a level
@@ -276,6 +276,7 @@ void bind_render(nb::module_& module) {
                "precision"_a = "double", "search"_a = "auto", "The rays of one pixel as nested dictionaries.");
     module.def("count_nan_pixels", &count_nan_pixels, "pixels"_a,
                "How many pixels of a float32 buffer, three numbers each, have a NaN among them.");
-    module.def("quantize", &quantized, "pixels"_a,
-               "8-bit RGB of a float32 buffer: the nearest of 255 levels to c, halves up, c clamped to 0..1, a NaN black.");
+    module.def(
+        "quantize", &quantized, "pixels"_a,
+        "8-bit RGB of a float32 buffer: the nearest of 255 levels to c, halves up, c clamped to 0..1, a NaN black.");
 }
