@@ -88,9 +88,9 @@ def _list(scene: "Scene", traced: dict[str, dict[str, Any]]) -> None:
     width = max(map(len, names))
     for name, tree in traced.items():
         color = tree["color"]
+        quantized = quantize(array("f", color))
         levels = " ".join(
-            f"{level:3}" if channel == channel else "NaN"
-            for channel, level in zip(color, quantize(array("f", color)), strict=True)
+            f"{b:3}" if channel == channel else "NaN" for b, channel in zip(quantized, color, strict=True)
         )
         print(f"colour  {name:{width}}  {'  '.join(f'{channel:.8f}' for channel in color)}   of 255: {levels}")
     if len(names) == 2:

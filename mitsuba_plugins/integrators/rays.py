@@ -148,8 +148,8 @@ def refract(d: Any, n: Any, eta: Any, error: Any = 0) -> tuple[Any, Any, Any]:
     through = d * eta + n * (eta * cosine - dr.sqrt(dr.maximum(cosine2, 0)))
     length = dr.norm(through)
     total = ~((cosine2 >= 0) & (length > 0))  # of a ratio beyond all measure these may be no numbers, or 0
-    steepest = quotient(2 * dr.square(1 + eta), dr.sqrt(dr.maximum(cosine2, 0)))
-    spread = dr.fmin(error * steepest + least_spread(cosine), most_blur(cosine))
+    # In the plane of incidence it is more near the critical angle; across it, it is not.
+    spread = dr.minimum(2 * error * (1 + eta) + least_spread(cosine), most_blur(cosine))
     return dr.select(total, reflect(d, n), through * quotient(1, length)), total, spread
 
 

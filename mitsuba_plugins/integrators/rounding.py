@@ -17,15 +17,18 @@ import numpy as np
 
 from mitsuba_plugins.arithmetic import quotient
 
+DECIDES_TIES = False
+"""Whether ties are decided by rule, as `decides_ties` of the native tracer's rounding.h says of that."""
+
 
 def epsilon(number: Any) -> float:
     """The unit of the bounds: the distance from 1 to the next double. 0 in single precision, which decides no ties."""
-    return 2.0**-52 if dr.type_v(number) == dr.VarType.Float64 else 0.0
+    return 2.0**-52 if DECIDES_TIES and dr.type_v(number) == dr.VarType.Float64 else 0.0
 
 
 def least_spread(number: Any) -> float:
-    """Some sixteen roundings, of a unit vector's component and of its products with others."""
-    return 16 * epsilon(number)
+    """Some eight roundings, of a unit vector's component and of its products with others."""
+    return 4 * epsilon(number)
 
 
 def most_blur(number: Any) -> float:
@@ -35,7 +38,7 @@ def most_blur(number: Any) -> float:
 
 def input_error(number: float) -> float:
     """Of a number in a file: a whole one is meant as it stands, any other is a decimal that was rounded to a double."""
-    return 0.0 if number == math.floor(number) else 2.0**-52 * abs(number)
+    return 0.0 if number == math.floor(number) or not DECIDES_TIES else 2.0**-52 * abs(number)
 
 
 def camera_errors(types: Any, sensor: Any) -> tuple[Any, Any]:
@@ -79,7 +82,11 @@ def coordinate_errors(p: Any, n: Any, d: Any, t: Any, off: Any) -> Any:
         off: how far ray and surface may be off from one another; the point is, the more the ray slants.
 
     """
-    rounding = 2 * epsilon(t)
     reach = dr.maximum(dr.maximum(dr.abs(p.x), dr.abs(p.y)), dr.abs(p.z))
-    blur = rounding * reach + dr.fmin(quotient(off, dr.abs(dr.dot(n, d))), most_blur(t) * (reach + t))
-    return type(n)(*(dr.select(dr.abs(a) < 1, blur, rounding * dr.abs(x)) for a, x in zip(n, p, strict=True)))
+    along = dr.fmin(quotient(off, dr.abs(dr.dot(n, d))), most_blur(t) * (reach + t))
+
+    def error(coordinate: Any, normal: Any, slope: Any) -> Any:
+        rounding = 2 * epsilon(t) * dr.abs(coordinate)
+        return rounding + dr.select(dr.abs(normal) < 1, off + dr.abs(slope) * along, 0)
+
+    return type(n)(*map(error, p, n, d))

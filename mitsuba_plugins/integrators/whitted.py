@@ -390,7 +390,9 @@ class Whitted(mi.SamplingIntegrator):
     def primary_ray(self, sensor, position) -> Ray:
         """The ray through a film position (Point2d, in pixels), in double precision where the sensor has it."""
         if hasattr(sensor, "primary_ray"):
-            ray = start_ray(self.types, *sensor.primary_ray(position), *self._errors_of_primary_rays)
+            o, d = sensor.primary_ray(position)
+            error, spread = self._errors_of_primary_rays
+            ray = start_ray(self.types, o, d, error, spread)
             return ray if self._eye_contact is None else self._eye_contact.start(ray)
         size, offset = sensor.film().crop_size(), sensor.film().crop_offset()
         sample = mi.Point2f(quotient(position - mi.Point2d(offset), mi.Point2d(size)))

@@ -11,15 +11,18 @@
 
 namespace whitted::WHITTED_ISA {
 
-// How far the coordinates of a point may be off that is `blur` off along its surface: a plane along the axes fixes one.
+// How far the coordinates of a point of a surface may be off: by what ray and surface may be off from one another, and
+// by `along` along the ray's direction. A plane along the axes fixes one.
 template <typename Real>
 Vector<Lanes<Real>> coordinate_errors(const Vector<Lanes<Real>>& point, const Vector<Lanes<Real>>& outward,
-                                      Lanes<Real> blur) {
+                                      const Vector<Lanes<Real>>& direction, Lanes<Real> off, Lanes<Real> along) {
     using L = Lanes<Real>;
-    const auto error = [&](L coordinate, L normal) {
-        return select(abs(normal) < L(Real(1)), blur, L(2 * tie_epsilon<Real>) * abs(coordinate));
+    const auto error = [&](L coordinate, L normal, L slope) {
+        const L rounding = L(2 * tie_epsilon<Real>) * abs(coordinate);
+        return rounding + select(abs(normal) < L(Real(1)), off + abs(slope) * along, L(Real(0)));
     };
-    return {error(point.x, outward.x), error(point.y, outward.y), error(point.z, outward.z)};
+    return {error(point.x, outward.x, direction.x), error(point.y, outward.y, direction.y),
+            error(point.z, outward.z, direction.z)};
 }
 
 template <typename Real>

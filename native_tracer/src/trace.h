@@ -170,9 +170,8 @@ Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const H
         surface.pigment = color_at(*object.pigment, surface.point, [&] {
             // A ray that is off meets the surface farther off the more it slants.
             const L off = rays.t_min + patch.error_at(rays.reach) + hits.t * rays.spread;
-            const L across = off / abs(dot(surface.outward, rays.direction));
-            const L blur = L(2 * tie_epsilon<Real>) * reach + min(across, L(most_blur<Real>) * (reach + hits.t));
-            return coordinate_errors(surface.point, surface.outward, blur);
+            const L along = min(off / abs(dot(surface.outward, rays.direction)), L(most_blur<Real>) * (reach + hits.t));
+            return coordinate_errors(surface.point, surface.outward, rays.direction, off, along);
         });
         const Finish<Real>& finish = object.finish;
         surface.ka = finish.ka;
@@ -297,7 +296,8 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
         const Mask<Real> total = ~((cosine2 >= zero) & (length2 > zero));
         bent = select(total, mirrored, refracted * (one / sqrt(length2)));
         bent_inside = select(total, hits.inside, ~hits.inside);
-        const L steepest = L(2) * (one + eta) * (one + eta) / sqrt(max(cosine2, zero));
+        // In the plane of incidence it is more near the critical angle; across it, it is not.
+        const L steepest = L(2) * (one + eta);
         bent_spread =
             select(total, mirrored_spread, min(cosine_error * steepest + L(least_spread<Real>), L(most_blur<Real>)));
         observer_.total_reflection(group, transmits & total);

@@ -13,7 +13,6 @@ from converter.studies.families import (
     reflection,
     refraction,
     size,
-    ties,
 )
 from converter.studies.family import Family
 
@@ -30,7 +29,6 @@ FAMILIES: Mapping[str, Family] = {
         lights_and_camera,
         incidence,
         ray_trees,
-        ties,
     )
     for family in module.FAMILIES
 }
