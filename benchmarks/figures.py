@@ -33,12 +33,12 @@ from converter.scene.parser import load_scene, parse_scene
 from converter.scene.settings import Settings
 from native_tracer import quantize
 
-ROOT = Path(__file__).resolve().parent.parent
-sys.path.insert(0, str(ROOT / "scenes"))
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "scenes"))
 
 from random_scenes import random_scene
 from round_numbers import SQUARES, TEXTURE
 
+ROOT = Path(__file__).resolve().parent.parent
 FIGURE1 = ROOT / "scenes" / "figure1.in"
 PROGRAMS = Path(sys.executable).parent
 RUNS, FEW_RUNS = 11, 3
@@ -95,8 +95,8 @@ def agreement() -> None:
 
 def same_bytes() -> None:
     """The gallery's scenes at 400 x 300, and random ones: whether both renderers' .ppm files are the same."""
-    print("400 x 300: bytes of the .ppm files of both renderers that differ, by how many levels at most, and of how many")
-    print("pixels the colours themselves differ by more than a tenth of a level")
+    print("400 x 300: bytes of both renderers' .ppm files that differ, by how many levels at most, and pixels whose")
+    print("colours differ by more than a tenth of a level: in others a rounding has decided between two levels")
     settings = Settings(width=400, height=300)
     for file in sorted((ROOT / "scenes").glob("*.in")):
         print(f"{file.name:<18}{_bytes_told(*_unlike_bytes(load_scene(file), settings))}", flush=True)
@@ -114,7 +114,8 @@ def same_bytes() -> None:
 
 def _unlike_bytes(scene: Scene, settings: Settings) -> tuple[int, int, int]:
     """How many bytes of the renderers' pictures differ, by how many levels at most, and how many pixels do visibly."""
-    pictures = [np.asarray(renderer.render(scene, settings).pixels) for renderer in (NativeRenderer(), MitsubaRenderer())]
+    renderers = NativeRenderer(), MitsubaRenderer()
+    pictures = [np.asarray(renderer.render(scene, settings).pixels) for renderer in renderers]
     levels = [np.frombuffer(quantize(picture), np.uint8).astype(int) for picture in pictures]
     off = np.abs(levels[0] - levels[1])
     far = np.abs(pictures[0].astype(float) - pictures[1]).max(axis=2) > 0.1 / 255

@@ -65,6 +65,18 @@ def test_checker_boundary_is_exact_in_double_precision(mi):
     assert texture.color_at(mi.Point3d(0.05, y, 0.05)).x[0] == expected
 
 
+def test_solid_keeps_its_color_exactly(mi):
+    texture = mi.load_dict({"type": "solid", "color": {"type": "rgb", "value": [0.1, -0.7, 3.3]}})
+    assert np.ravel(texture.color_at(mi.Point3d(1, 2, 3))).tolist() == [0.1, -0.7, 3.3]
+    single = np.array([0.1, -0.7, 3.3], np.float32)
+    assert np.array_equal(np.ravel(texture.eval(mi.SurfaceInteraction3f())), single)
+    assert not texture.is_spatially_varying()
+    parameters = mi.traverse(texture)
+    parameters["color"] = mi.Color3f(0.5, 0.25, 0)
+    parameters.update()
+    assert np.ravel(texture.color_at(mi.Point3d(0))).tolist() == [0.5, 0.25, 0]
+
+
 def test_checker_divides_by_its_size(mi):
     """0.3 / 0.1 lies below 3, and 0.3 times the reciprocal does not."""
     texture = mi.load_dict(
