@@ -303,5 +303,5 @@ def passage_crossing(passage: Passage, ray: Ray, own: Any, reach: Any) -> tuple[
     t, record, _ = passage_distance(passage, ray, own, passage.enter > passage.leave)
     gap = passage.enter - passage.leave
     at_edge = (gap > 0) & (gap <= most_blur(gap) * (reach + passage.enter))
-    between_planes = (t < dr.inf) & (passage.between <= most_blur(gap) * (reach + t))
+    between_planes = (t < dr.inf) & (passage.between < most_blur(gap) * (reach + t))
     return t, record, (passage.along | at_edge | between_planes) & (~own | ray.inside)

@@ -305,7 +305,7 @@ template <bool which_piece, typename Real>
     }
     crossing = crossing_of(passage, rays, from_within);
     if constexpr (which_piece) {
-        close |= (between_planes <= L(most_blur<Real>) * (rays.reach + crossing.t)) &
+        close |= (between_planes < L(most_blur<Real>) * (rays.reach + crossing.t)) &
                  (crossing.t < L(std::numeric_limits<Real>::infinity()));
     }
     return true;
