@@ -75,7 +75,7 @@ struct EyeContact {
     Mask<Real> leads_inside(const Vector<Lanes<Real>>& direction, Real spread) const {
         Mask<Real> result = outward.empty() ? Mask<Real>::none() : ~Mask<Real>::none();
         for (const Vector<Real>& normal : outward) {
-            result &= dot(Vector<Lanes<Real>>(normal), direction) <= Lanes<Real>(spread);
+            result &= dot(Vector<Lanes<Real>>(normal), direction) < Lanes<Real>(spread);
         }
         return result;
     }
