@@ -62,7 +62,7 @@ class AnalyticSurfaces(ExactSurfaces):
             object_best = dr.select(closer, index, object_best)
             record_best = dr.select(closer, record, record_best)
         near = most_blur(t_best) * (t_best + reach)
-        close |= (t_second - t_best <= near) | (t_best <= near)
+        close |= (t_second - t_best <= near) | (t_best < near)
         return t_best, object_best, record_best, close
 
     @dr.syntax
@@ -76,7 +76,7 @@ class AnalyticSurfaces(ExactSurfaces):
             reach = largest(ray.o)
             for index in range(len(self._spheres)):
                 t, record, ties = self._intersect(index, ray, reach)
-                close |= ties | (t <= most_blur(t) * reach)
+                close |= ties | (t < most_blur(t) * reach)
                 blocks = t < distance
                 if dr.hint(index in self.contacts.objects, mode="scalar"):
                     blocks &= ~self.contacts.lies_at(light, record, ray.d, t, distance, active)

@@ -90,7 +90,7 @@ class BvhSurfaces(ExactSurfaces):
             tested = searching & (index != NOTHING)
             if tested:
                 t, record, near_tie = self._intersect(ray, index, tested, reach)
-                close |= tested & (near_tie | (t <= most_blur(t) * reach))
+                close |= tested & (near_tie | (t < most_blur(t) * reach))
                 # Of surfaces at the same distance the first counts.
                 ties = (t == t_best) & (object_best != NOTHING) & (index < object_best)
                 closer = tested & ((t < t_best) | ties)
@@ -122,7 +122,7 @@ class BvhSurfaces(ExactSurfaces):
             searching &= index != NOTHING
         if dr.hint(light is None, mode="scalar"):
             near = most_blur(t_best) * (t_best + reach)
-            close |= (t_second - t_best <= near) | (t_best <= near)
+            close |= (t_second - t_best <= near) | (t_best < near)
         return t_best, object_best, record_best, close
 
     def _intersect(self, ray: Ray, index: Any, active: Any, reach: Any) -> tuple[Any, Any, Any]:

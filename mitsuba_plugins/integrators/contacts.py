@@ -126,7 +126,7 @@ class EyeContact:
         contact = self._contacts[0]
         leads_inside = mi.Bool(True)
         for normal in self._normals:
-            leads_inside &= dr.dot(normal, ray.d) <= ray.spread  # a ray along a surface, too: a body is closed
+            leads_inside &= dr.dot(normal, ray.d) < ray.spread  # a ray along a surface, too: a body is closed
         width = dr.width(ray.d)
         index, record = (dr.opaque(mi.UInt32, number, width) for number in (contact.object, contact.record))
         return Ray(ray.o, ray.d, index, record, leads_inside, ray.t_min, ray.spread)

@@ -11,7 +11,7 @@ from mitsuba_plugins.integrators.columns import column
 from mitsuba_plugins.integrators.contacts import LightContacts
 from mitsuba_plugins.integrators.geometry import Surface
 from mitsuba_plugins.integrators.rays import NOTHING, Hit, Ray, Real, largest, origin_error, spawn
-from mitsuba_plugins.integrators.rounding import least_spread, most_blur, surface_error
+from mitsuba_plugins.integrators.rounding import DECIDES_TIES, least_spread, most_blur, surface_error
 
 
 class Records:
@@ -176,7 +176,7 @@ class ExactSurfaces:
         while active & ~sphere & (record < end):
             row = self.records.row(record, active)
             n = type(ray.d)(row.xyz)
-            error = ray.t_min + surface_error(mi.Bool(False), n, row.w, reach)
+            error = (ray.t_min + surface_error(mi.Bool(False), n, row.w, reach)) * int(DECIDES_TIES)
             slope = dr.dot(n, ray.d)
             height = dr.dot(n, ray.o) + row.w
             t = dr.select(dr.abs(height) <= error, 0, -quotient(height, slope))
@@ -303,5 +303,5 @@ def passage_crossing(passage: Passage, ray: Ray, own: Any, reach: Any) -> tuple[
     t, record, _ = passage_distance(passage, ray, own, passage.enter > passage.leave)
     gap = passage.enter - passage.leave
     at_edge = (gap > 0) & (gap <= most_blur(gap) * (reach + passage.enter))
-    between_planes = (t < dr.inf) & (passage.between <= most_blur(gap) * (reach + t))
+    between_planes = (t < dr.inf) & (passage.between < most_blur(gap) * (reach + t))
     return t, record, (passage.along | at_edge | between_planes) & (~own | ray.inside)

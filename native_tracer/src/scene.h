@@ -75,7 +75,7 @@ struct EyeContact {
     Mask<Real> leads_inside(const Vector<Lanes<Real>>& direction, Real spread) const {
         Mask<Real> result = outward.empty() ? Mask<Real>::none() : ~Mask<Real>::none();
         for (const Vector<Real>& normal : outward) {
-            result &= dot(Vector<Lanes<Real>>(normal), direction) <= Lanes<Real>(spread);
+            result &= dot(Vector<Lanes<Real>>(normal), direction) < Lanes<Real>(spread);
         }
         return result;
     }
@@ -171,7 +171,7 @@ struct Scene {
                 return true;
             });
         const Lanes<Real> range = Lanes<Real>(most_blur<Real>) * (hits.t + rays.reach);
-        close |= (second - hits.t <= range) | (hits.t <= range);
+        close |= (second - hits.t <= range) | (hits.t < range);
         close &= wanted;
         if (any(close)) [[unlikely]] {
             const Hits<Real> settled = nearest_hit_by_rules(rays, close);
@@ -264,7 +264,7 @@ struct Scene {
         const Lanes<Real> range = Lanes<Real>(most_blur<Real>) * rays.reach;
         for_each_crossing<ties>(
             rays, limit, close, may_block, [&](Indices<Real> object, const Crossing<Real>& crossing) {
-                close |= crossing.t <= range;
+                close |= crossing.t < range;
                 const Mask<Real> blocked = open & (crossing.t < distance) & ~light.lies_at(crossing, rays.direction);
                 blocker = select(blocked, object, blocker);
                 open &= ~blocked;

@@ -226,7 +226,7 @@ template <typename Real>
         const Vector<L> normal(plane.anchor);
         const L slope = dot(normal, rays.direction);
         const L height = dot(normal, rays.origin) + L(plane.size);
-        const L error = rays.t_min + plane.error_at(rays.reach);
+        const L error = decides_ties ? rays.t_min + plane.error_at(rays.reach) : zero;
         const Indices<Real> patch = k;
         const L t = select(abs(height) <= error, zero, -height / slope);
         const L t_error = (error + abs(t) * rays.spread) / abs(slope);
@@ -305,7 +305,7 @@ template <bool which_piece, typename Real>
     }
     crossing = crossing_of(passage, rays, from_within);
     if constexpr (which_piece) {
-        close |= (between_planes <= L(most_blur<Real>) * (rays.reach + crossing.t)) &
+        close |= (between_planes < L(most_blur<Real>) * (rays.reach + crossing.t)) &
                  (crossing.t < L(std::numeric_limits<Real>::infinity()));
     }
     return true;
