@@ -169,7 +169,7 @@ Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const H
 
         surface.pigment = color_at(*object.pigment, surface.point, [&] {
             // A ray that is off meets the surface farther off the more it slants.
-            const L off = rays.t_min + patch.error_at(rays.reach) + hits.t * rays.spread;
+            const L off = decides_ties ? rays.t_min + patch.error_at(rays.reach) + hits.t * rays.spread : zero;
             const L along = min(off / abs(dot(surface.outward, rays.direction)), L(most_blur<Real>) * (reach + hits.t));
             return coordinate_errors(surface.point, surface.outward, rays.direction, off, along);
         });
