@@ -97,7 +97,7 @@ class ExactSurfaces:
     def error(self, ray: Ray, hit: Hit) -> Any:
         """How far a ray and the surface that it has met may be off from one another."""
         surface = self.records.surface(hit.object, hit.record, hit.valid)
-        return ray.t_min + surface_error(*surface, largest(ray.o)) + hit.t * ray.spread
+        return _off(ray, *surface, largest(ray.o)) + hit.t * ray.spread
 
     def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any, Any]:
         """Distance (infinite for none), object (NOTHING for none) and record of the first hit, and whether it was close
@@ -158,7 +158,7 @@ class ExactSurfaces:
         first, end = self.records.range(index, active)
         sphere, v, w = self.records.surface(index, first, active)
 
-        error = ray.t_min + surface_error(sphere, v, w, reach)
+        error = _off(ray, sphere, v, w, reach)
         t_sphere, _ = sphere_distance(v, w, ray, own, error)
         # A ray that starts on a sphere by the roundings of its origin, and not by knowledge, does not meet it there.
         starts = ~own & (dr.abs(dr.norm(ray.o - v) - w) <= error) & (error <= most_blur(w) * w)
@@ -176,7 +176,7 @@ class ExactSurfaces:
         while active & ~sphere & (record < end):
             row = self.records.row(record, active)
             n = type(ray.d)(row.xyz)
-            error = (ray.t_min + surface_error(mi.Bool(False), n, row.w, reach)) * int(DECIDES_TIES)
+            error = _off(ray, mi.Bool(False), n, row.w, reach)
             slope = dr.dot(n, ray.d)
             height = dr.dot(n, ray.o) + row.w
             t = dr.select(dr.abs(height) <= error, 0, -quotient(height, slope))
@@ -203,6 +203,11 @@ class ExactSurfaces:
             dr.select(hit, dr.select(sphere, t_sphere_error, t_error), 0),
             dr.select(sphere, first, record),
         )
+
+
+def _off(ray: Ray, sphere: Any, v: Any, w: Any, reach: Any) -> Any:
+    """How far a ray's origin and a surface may be off from one another, where ties are decided."""
+    return (ray.t_min + surface_error(sphere, v, w, reach)) * float(DECIDES_TIES)
 
 
 # ---- Sphere ----------------------------------------------------------------------------------------------------------
