@@ -11,6 +11,7 @@ from typing import Any
 from finite import assert_finite
 
 from converter.commands import main, raytrace
+from converter.errors import ExportError
 from converter.images import ppm
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
@@ -21,7 +22,6 @@ from converter.scene.needs import scene_needs
 from converter.scene.notices import scene_notices
 from converter.scene.parser import parse_scene
 from converter.scene.settings import Settings
-from converter.to_mitsuba.export import ExportError
 from converter.to_mitsuba.polyhedra import PolyhedronError
 from converter.to_mitsuba.scene import scene_description
 from converter.to_povray.scene import povray_scene

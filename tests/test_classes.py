@@ -17,8 +17,8 @@ from converter.compare.margins import (
     silhouette_margin,
     surface_margin,
     tie_margin,
-    tile_margin,
 )
+from converter.pigments import checker, solid
 from converter.renderers.methods import METHODS
 from converter.scene.model import Checker, Polyhedron, Solid, Sphere
 from converter.scene.parser import load_scene
@@ -84,8 +84,8 @@ def test_margins_of_places():
     assert edge_margin(BOX, o, d) == pytest.approx(0.125)
     assert tie_margin(Crossing(2.0, -1.0), Crossing(2.5, 0.5)) == pytest.approx(0.5 / 3)
     assert [c.t for c in crossings(BALL, np.array(BALL.center), d)] == pytest.approx([-1.25, 1.25])
-    assert tile_margin(Checker((1, 1, 1), (0, 0, 0), 2.0), np.array([3.5, 1.1, 4.7])) == pytest.approx(0.5)
-    assert tile_margin(Solid((1, 1, 1)), np.array([0.0, 0.0, 0.0])) == np.inf
+    assert checker.edge_margin(Checker((1, 1, 1), (0, 0, 0), 2.0), np.array([3.5, 1.1, 4.7])) == pytest.approx(0.5)
+    assert solid.edge_margin(Solid((1, 1, 1)), np.array([0.0, 0.0, 0.0])) == np.inf
 
 
 # ---- The gallery

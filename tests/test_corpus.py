@@ -23,6 +23,7 @@ from finite import assert_finite
 
 from converter.commands import main, raytrace
 from converter.commands.inspection import inspect_scene
+from converter.errors import ExportError
 from converter.images.texture import TextureError
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
@@ -31,7 +32,7 @@ from converter.scene.errors import SceneError
 from converter.scene.model import Sphere
 from converter.scene.parser import MOST_PROBLEMS, load_scene, parse_scene
 from converter.scene.settings import Settings
-from converter.to_mitsuba.export import ExportError, export_scene
+from converter.to_mitsuba.export import export_scene
 from converter.to_mitsuba.polyhedra import PolyhedronError
 from converter.to_povray.export import export_povray
 

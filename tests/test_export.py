@@ -9,12 +9,13 @@ import pytest
 from variant import VARIANT
 
 import mitsuba_plugins
+from converter.errors import ExportError
 from converter.images.texture import read_texture
 from converter.images.write import write_image
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.scene.model import Texmap
 from converter.scene.settings import Settings
-from converter.to_mitsuba.export import ExportError, export_scene
+from converter.to_mitsuba.export import export_scene
 
 
 @pytest.fixture

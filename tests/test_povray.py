@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from converter.commands import main
+from converter.errors import ExportError
 from converter.scene.model import Finish, Object, Polyhedron, Scene, Sphere, Texmap
 from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings
 from converter.scene.writer import write_scene
-from converter.to_mitsuba.export import ExportError
 from converter.to_povray.export import export_povray
 from converter.to_povray.finishes import finish, transmission
 from converter.to_povray.interiors import Interior, Relation, interiors, relation

@@ -10,6 +10,7 @@ from converter.commands.options import Parser, add_reading_options, settings_fro
 from converter.commands.results import TextResult
 from converter.commands.tables import print_table
 from converter.descriptors import STANDARD_OUTPUT
+from converter.pigments.table import PIGMENT_WORDS
 
 MOST_ROWS = 20
 """Rows of a table; a scene may have thousands of polyhedra."""
@@ -70,7 +71,7 @@ def _print(found: dict[str, Any]) -> None:
         "pigments",
         ("", "kind", "", "objects"),
         "rllr",
-        [(str(p["pigment"]), p["kind"], _pigment(p), _uses(p)) for p in found["pigments"]],
+        [(str(p["pigment"]), p["kind"], PIGMENT_WORDS[p["kind"]].summary(p), _uses(p)) for p in found["pigments"]],
     )
     _print_rows(
         "finishes",
@@ -170,15 +171,6 @@ def _print_rows(title: str, header: tuple[str, ...], align: str, rows: list[tupl
     print_table(rows[:MOST_ROWS], header, align, title)
     if len(rows) > MOST_ROWS:
         print(f"... and {len(rows) - MOST_ROWS} more; --json lists them all")
-
-
-def _pigment(pigment: dict[str, Any]) -> str:
-    if pigment["kind"] == "solid":
-        return _numbers(pigment["color"])
-    if pigment["kind"] == "checker":
-        return f"{_numbers(pigment['first'])} and {_numbers(pigment['second'])}, size {pigment['size']:g}"
-    size = f"{pigment['width']} x {pigment['height']}" if pigment["width"] else "missing"
-    return f"{pigment['file']}, {size}, P0 {_numbers(pigment['p0'])}, P1 {_numbers(pigment['p1'])}"
 
 
 def _uses(entry: dict[str, Any]) -> str:

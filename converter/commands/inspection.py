@@ -4,8 +4,9 @@ from collections import Counter
 from dataclasses import asdict
 from typing import Any
 
+from converter.pigments.table import pigment_kind
 from converter.scene.cutoff import cutoff_bound
-from converter.scene.model import Checker, Finish, Pigment, Polyhedron, Scene, Solid
+from converter.scene.model import Finish, Pigment, Polyhedron, Scene
 from converter.scene.needs import SceneNeeds, is_index, scene_needs
 from converter.scene.notices import ior_notices, scene_notices
 from converter.scene.settings import Settings
@@ -69,14 +70,8 @@ def _pigments(scene: Scene) -> list[dict[str, Any]]:
 
 
 def _pigment(pigment: Pigment) -> dict[str, Any]:
-    kind = {"kind": type(pigment).__name__.lower()}
-    if isinstance(pigment, Solid | Checker):
-        return {**kind, **asdict(pigment)}
-    from converter.images.texture import probe_texture
-
-    # A scene may have one that is missing, if no object uses it.
-    width, height = probe_texture(pigment.file) if pigment.file.exists() else (None, None)
-    return {**kind, "file": str(pigment.file), "width": width, "height": height, "p0": pigment.p0, "p1": pigment.p1}
+    kind = pigment_kind(pigment)
+    return {"kind": kind.SPELLINGS[0], **kind.facts(pigment)}
 
 
 def _finishes(scene: Scene, needs: SceneNeeds, settings: Settings) -> list[dict[str, Any]]:

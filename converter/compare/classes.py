@@ -27,10 +27,10 @@ from converter.compare.margins import (
     silhouette_margin,
     surface_margin,
     tie_margin,
-    tile_margin,
 )
 from converter.compare.metrics import LIMIT, Pixels, absolute_difference
 from converter.compare.rays import Pair, Ray, pair_trees
+from converter.pigments.table import pigment_kind
 from converter.scene.model import Polyhedron, Scene, Shape, Sphere
 from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings
@@ -273,7 +273,8 @@ class _Explainer:
         inherited = min(spread(inherited), TWICE * math.dist(hit["point"], hits[1]["point"]))
         if _largest(hit, hits[1], "pigment") > 2**-20:
             pigment = self._scene.pigments[self._scene.objects[hit["object"]].pigment]
-            near = _Margin(tile_margin(pigment, np.array(hit["point"])), inherited, own)
+            margin = pigment_kind(pigment).edge_margin(pigment, np.array(hit["point"]))
+            near = _Margin(margin, inherited, own)
             yield _Cause("checker or texel edge", "pigment", ray, ray["weight"] * _largest(ray, other, "local"), near)
         yield from self._light_causes(ray, hits, inherited, own)
         if all(_lit(one) == _lit(two) for one, two in zip(hit["lights"], hits[1]["lights"], strict=True)):

@@ -12,7 +12,7 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
-from converter.scene.model import Checker, Pigment, Polyhedron, Shape, Solid, Sphere, Texmap
+from converter.scene.model import Polyhedron, Shape, Sphere
 from native_tracer.halfspaces import polyhedron_facts
 
 Floats = NDArray[np.float64]
@@ -87,28 +87,6 @@ def tie_margin(a: Crossing, b: Crossing) -> float:
     if a.cosine == 0 or b.cosine == 0:
         return 0.0
     return abs(a.t - b.t) / (1 / abs(a.cosine) + 1 / abs(b.cosine))
-
-
-def tile_margin(pigment: Pigment, p: Floats) -> float:
-    """From a point to the next cube of a checkerboard, or the next texel of an image; infinite for a single colour."""
-    if isinstance(pigment, Solid):
-        return INFINITE
-    if isinstance(pigment, Checker):
-        return float(np.abs(p / pigment.size - np.round(p / pigment.size)).min()) * pigment.size
-    return _texel_margin(pigment, p)
-
-
-def _texel_margin(pigment: Texmap, p: Floats) -> float:
-    from converter.images.texture import read_texture
-
-    texture = read_texture(pigment.file, pigment.place)
-    result = INFINITE
-    for row, count in ((pigment.p0, texture.width), (pigment.p1, texture.height)):
-        gradient = math.hypot(*row[:3]) * count
-        if gradient > 0:
-            position = (float(np.dot(row[:3], p)) + row[3]) * count
-            result = min(result, abs(position - round(position)) / gradient)
-    return result
 
 
 def _nearest(ball: Sphere, origin: Floats, direction: Floats) -> tuple[float, float]:

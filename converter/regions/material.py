@@ -5,9 +5,10 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from converter.pigments.table import pigment_kind
 from converter.regions.region import Finding, Region, worst
 from converter.regions.situation import Floats, Situation
-from converter.scene.model import Checker, Polyhedron, Sphere, Texmap
+from converter.scene.model import Polyhedron, Sphere
 
 SEEN = 0.25
 """What the last of many bounces has to weigh for its errors to be plain."""
@@ -29,15 +30,9 @@ def _fine_patterns(s: Situation, limit: float) -> Iterator[Finding]:
     shares = np.full(len(s.scene.objects), np.inf)
     for i, o in enumerate(s.scene.objects):
         pigment = s.scene.pigments[o.pigment]
-        if isinstance(pigment, Checker):
-            shares[i] = pigment.size / _far_point(s, i).max()
-        elif isinstance(pigment, Texmap):
-            point = np.append(_far_point(s, i), 1.0)
-            images = max(float(np.abs(row) @ point) for row in (pigment.p0, pigment.p1))
-            shares[i] = 1 / images if images > 0 else np.inf
+        shares[i] = pigment_kind(pigment).period(pigment, _far_point(s, i))
     for i, more in worst(shares, limit):
-        checker = isinstance(s.scene.pigments[s.scene.objects[i].pigment], Checker)
-        what = "tiles" if checker else "copies of its image"
+        what = pigment_kind(s.scene.pigments[s.scene.objects[i].pigment]).REPEATS
         text = f"object {i} is {1 / shares[i]:.2g} {what} from the origin (more than {1 / limit:.2g}{more})"
         yield Finding(s.scene.objects[i].line, text)
 

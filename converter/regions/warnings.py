@@ -5,11 +5,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from converter.pigments.table import pigment_kind
 from converter.regions import bodies, contacts, light, material, view
 from converter.regions.region import Finding
 from converter.regions.situation import Situation, situation_of
 from converter.scene.errors import place
-from converter.scene.model import Scene, Solid
+from converter.scene.model import Scene
 from converter.scene.settings import Settings
 
 if TYPE_CHECKING:
@@ -60,7 +61,7 @@ def _offset(s: Situation, arithmetic: str | None) -> Iterator[Finding]:
     """What comes of rays that start off their surfaces, in every scene where rays start anywhere, or tiles meet."""
     if arithmetic not in OFFSETS:
         return
-    patterned = any(not isinstance(s.scene.pigments[k], Solid) for k in s.needs.pigments)
+    patterned = any(pigment_kind(s.scene.pigments[k]).REPEATS for k in s.needs.pigments)
     if s.needs.lit or s.needs.reflects or s.needs.refracts or patterned:
         constant, factor = OFFSETS[arithmetic]
         corners = np.abs(np.concatenate([s.low, s.high]))

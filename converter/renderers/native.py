@@ -7,9 +7,10 @@ from dataclasses import dataclass
 from types import ModuleType
 from typing import Any, Literal
 
+from converter.pigments.table import pigment_kind
 from converter.renderers.base import Interrupted, Progress, RendererUnavailable, Rendering
 from converter.scene.coplanar import with_planes_shared
-from converter.scene.model import Checker, Object, Pigment, Scene, Solid, Sphere
+from converter.scene.model import Object, Scene, Sphere
 from converter.scene.needs import SceneNeeds, scene_needs
 from converter.scene.settings import Settings
 
@@ -147,7 +148,7 @@ def build_scene(scene: Scene, needs: SceneNeeds) -> Any:
     if needs.lit:
         for light in scene.lights:
             native.add_light(light.position, light.color, light.attenuation)
-    pigments = {i: _add_pigment(native, scene.pigments[i]) for i in needs.pigments}
+    pigments = {i: pigment_kind(p).add_to(native, p) for i in needs.pigments for p in (scene.pigments[i],)}
     finishes = {}
     for i in needs.finishes:
         f = scene.finishes[i]
@@ -155,20 +156,6 @@ def build_scene(scene: Scene, needs: SceneNeeds) -> Any:
     for o, planes in zip(with_planes_shared(scene).objects, needs.planes, strict=True):
         _add_object(native, o, planes, pigments[o.pigment], finishes[o.finish])
     return native
-
-
-def _add_pigment(native: Any, pigment: Pigment) -> int:
-    if isinstance(pigment, Solid):
-        index = native.add_solid(pigment.color)
-    elif isinstance(pigment, Checker):
-        index = native.add_checker(pigment.first, pigment.second, pigment.size)
-    else:
-        # The image library takes a while to import, and few scenes have textures.
-        from converter.images.texture import read_texture
-
-        texture = read_texture(pigment.file, pigment.place)
-        index = native.add_texmap(texture.width, texture.height, texture.texels, pigment.p0, pigment.p1)
-    return int(index)
 
 
 def _add_object(native: Any, o: Object, planes: tuple[int, ...], pigment: int, finish: int) -> None:

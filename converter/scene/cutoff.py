@@ -34,13 +34,14 @@ these are very many, near ones are taken together, as intervals, each of which c
 import math
 from collections.abc import Iterator
 from dataclasses import dataclass, replace
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
+from converter.pigments.table import pigment_kind
 from converter.scene.attenuation import least_divisor
-from converter.scene.model import Checker, Color, Pigment, Scene, Solid
+from converter.scene.model import Color, Scene
 from converter.scene.needs import SceneNeeds, depth_limit, scene_needs
 from converter.scene.settings import Settings
 
@@ -125,7 +126,9 @@ def _brightest(local: Floats, weights: Floats, background: Floats, depth: int) -
 
 def _local_colors(scene: Scene, needs: SceneNeeds) -> tuple[Floats, str]:
     """The largest local colour of each finish that is used, (n, 3), and what keeps one from being finite."""
-    pigments = {i: _largest(scene.pigments[i]) for i in needs.pigments}
+    pigments = {
+        i: np.array(pigment_kind(p).largest(p), dtype=np.float64) for i in needs.pigments for p in (scene.pigments[i],)
+    }
     rows = {finish: row for row, finish in enumerate(needs.finishes)}
     result = np.zeros((len(rows), 3))
     received: dict[tuple[int, int], Color] = {}  # the most that an object of some finish and pigment receives
@@ -151,22 +154,6 @@ def _local_colors(scene: Scene, needs: SceneNeeds) -> tuple[Floats, str]:
         local += np.multiply(answer, most, out=np.zeros(3), where=answer > 0)
         result[rows[finish_index]] = np.maximum(result[rows[finish_index]], local)
     return result, unbounded_by
-
-
-def _largest(pigment: Pigment) -> Floats:
-    """The largest absolute value of each channel of a pigment, (3,)."""
-    colors: list[Any]
-    if isinstance(pigment, Solid):
-        colors = [pigment.color]
-    elif isinstance(pigment, Checker):
-        colors = [pigment.first, pigment.second]
-    else:
-        from converter.images.texture import read_texture
-
-        texels = np.asarray(read_texture(pigment.file, pigment.place).texels)
-        colors = [texels.min(axis=(0, 1)), texels.max(axis=(0, 1))]
-    largest: Floats = np.abs(np.array(colors, dtype=np.float64)).max(axis=0)
-    return largest
 
 
 # ---- Which rays are dropped ----------------------------------------------------------------------------------------

@@ -9,8 +9,10 @@ and the others are still read.
 from collections.abc import Callable
 from typing import Any
 
-from converter.scene.entries import CAMERA, FOVY, NOT_YET, PLANE, Lost, Numbers, Reader, announced, has_digits
+from converter.scene.entries import CAMERA, FOVY, PLANE, announced
 from converter.scene.errors import shown
+from converter.scene.fields import Lost, Numbers
+from converter.scene.reader import NOT_YET, Reader, has_digits
 from converter.scene.sections import (
     SECTIONS,
     Line,

@@ -8,9 +8,10 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from converter.pigments.table import pigment_kind
 from converter.scene.attenuation import least_divisor
 from converter.scene.errors import place, so_are
-from converter.scene.model import Checker, Color, Plane, Polyhedron, Scene, Solid, Vector
+from converter.scene.model import Color, Plane, Polyhedron, Scene, Vector
 from converter.scene.needs import SceneNeeds, scene_needs
 from converter.scene.settings import Settings
 
@@ -87,10 +88,7 @@ def _turned(plane: Plane) -> Plane:
 def _pigment_colors(scene: Scene, needs: SceneNeeds) -> Iterator[_Oddity]:
     for k in needs.pigments:
         pigment = scene.pigments[k]
-        colors = [pigment.color] if isinstance(pigment, Solid) else []
-        if isinstance(pigment, Checker):
-            colors = [pigment.first, pigment.second]
-        for color in colors:
+        for color in pigment_kind(pigment).colors(pigment):
             if odd := _odd(color):
                 yield _Oddity(_line(scene.pigment_lines, k), f"pigment {k} {odd}")
                 break

@@ -5,9 +5,10 @@ from dataclasses import replace
 
 import numpy as np
 
-from converter.scene.model import Checker, Light, Object, Pigment, Polyhedron, Scene, Solid, Sphere, Texmap, Vector
+from converter.errors import ExportError
+from converter.pigments.table import pigment_kind
+from converter.scene.model import Light, Object, Polyhedron, Scene, Sphere, Vector
 from converter.scene.needs import SceneNeeds
-from converter.to_mitsuba.export import ExportError
 
 NEAREST, FARTHEST = 1e-3, 1e7
 """Distances between which POV-Ray sees everything."""
@@ -33,16 +34,6 @@ def scaled(scene: Scene, factor: float) -> Scene:
         a, b, c = source.attenuation
         return replace(source, position=times(source.position), attenuation=(a, b / factor, c / factor**2))
 
-    def pigment(source: Pigment) -> Pigment:
-        match source:
-            case Solid():
-                return source
-            case Checker():
-                return replace(source, size=factor * source.size)
-            case Texmap(_, (a, b, c, d), (e, f, g, h)):
-                p0, p1 = (a / factor, b / factor, c / factor, d), (e / factor, f / factor, g / factor, h)
-                return replace(source, p0=p0, p1=p1)
-
     def object_(source: Object) -> Object:
         match source.shape:
             case Sphere(center, radius):
@@ -57,7 +48,7 @@ def scaled(scene: Scene, factor: float) -> Scene:
         scene,
         camera=replace(scene.camera, eye=times(scene.camera.eye), look_at=times(scene.camera.look_at)),
         lights=tuple(map(light, scene.lights)),
-        pigments=tuple(map(pigment, scene.pigments)),
+        pigments=tuple(pigment_kind(source).scaled(source, factor) for source in scene.pigments),
         objects=tuple(map(object_, scene.objects)),
     )
 

@@ -1,4 +1,4 @@
-"""Pigments, and the images of textures."""
+"""Images projected through space, and the files of these images."""
 
 import math
 from collections.abc import Sequence
@@ -6,13 +6,13 @@ from collections.abc import Sequence
 import numpy as np
 from numpy.typing import NDArray
 
+from converter.errors import ExportError
 from converter.images.texture import Texture
-from converter.scene.model import Checker, Pigment, Solid, Texmap, Vector
-from converter.to_mitsuba.export import ExportError
-from converter.to_povray.text import number, rgb, vector
+from converter.pigments.kind import Box
+from converter.scene.model import Texmap
+from converter.to_povray.text import number
 
 Floats = NDArray[np.float64]
-Box = tuple[Vector, Vector]
 MARK = b"# Written by whitted convert\n"
 """A comment in the header of every image that is written."""
 SKEW = 1e-7
@@ -52,37 +52,20 @@ class Image:
         return b"P6\n" + MARK + b"%d %d\n%d\n" % (width, height, most) + raster.tobytes()
 
 
-def pigment(
-    source: Pigment, transmitted: float = 0.0, image: Image | None = None, boxes: Sequence[Box] | None = None
-) -> str:
-    """A `pigment` block.
+def image_maps(source: Texmap, transmitted: float, image: Image, boxes: Sequence[Box] | None) -> str:
+    """An image map, or a choice of them where s or r have either sign: what is inside a `pigment` block.
+
+    POV-Ray rounds a texel's number down where our format truncates it: below 0 that is one texel less.
 
     Args:
         source: the pigment.
         transmitted: how much of the light that comes from behind it lets through.
-        image: that of a texmap.
+        image: its image.
         boxes: what has this pigment lies in them; None where it has no bounds.
 
-    """
-    match source:
-        case Solid(color):
-            return f"pigment {{ {_color(color, transmitted)} }}"
-        case Checker(first, second, size):
-            colors = f"{_color(first, transmitted)}, {_color(second, transmitted)}"
-            return f"pigment {{ checker {colors} scale {number(size)} }}"
-        case Texmap():
-            assert image is not None
-            return _texmap(source, transmitted, image, boxes)
+    Raises:
+        ExportError: POV-Ray has no numbers for it.
 
-
-def _color(color: tuple[float, float, float], transmitted: float) -> str:
-    return f"rgbt {vector((*color, transmitted))}" if transmitted else rgb(color)
-
-
-def _texmap(source: Texmap, transmitted: float, image: Image, boxes: Sequence[Box] | None) -> str:
-    """An image map, or a choice of them where s or r have either sign.
-
-    POV-Ray rounds a texel's number down where our format truncates it: below 0 that is one texel less.
     """
     height, width, _ = image.texels.shape
     axes = [(p, _negative(p, boxes), 1 / texels) for p, texels in ((source.p0, width), (source.p1, height))]
@@ -98,7 +81,7 @@ def _texmap(source: Texmap, transmitted: float, image: Image, boxes: Sequence[Bo
         side = f"select(({x})*x + ({y})*y + ({z})*z + ({d}), 0.25, 0.75)"
         return f"function {{ {side} }}\n  pigment_map {{\n  [0.5 {below}]\n  [0.5 {above}] }}"
 
-    return f"pigment {{ {choose(0, ())} }}"
+    return choose(0, ())
 
 
 def _image_map(source: Texmap, transmitted: float, file: str, shifts: tuple[float, ...]) -> str:
