@@ -11,6 +11,7 @@ from converter.commands.results import TextResult
 from converter.commands.tables import print_table
 from converter.descriptors import STANDARD_OUTPUT
 from converter.pigments.table import PIGMENT_WORDS
+from converter.shapes.table import SHAPE_KINDS
 
 MOST_ROWS = 20
 """Rows of a table; a scene may have thousands of polyhedra."""
@@ -178,8 +179,8 @@ def _uses(entry: dict[str, Any]) -> str:
 
 
 def _counted(kind: str, count: int) -> str:
-    plurals = {"polyhedron": "polyhedra"}
-    return f"{count} {kind if count == 1 else plurals.get(kind, f'{kind}s')}"
+    plurals = {each.NAME: each.PLURAL for each in SHAPE_KINDS.values()}
+    return f"{count} {kind if count == 1 else plurals[kind]}"
 
 
 def _indices(indices: list[int]) -> str:

@@ -6,10 +6,11 @@ from typing import Any
 
 from converter.pigments.table import pigment_kind
 from converter.scene.cutoff import cutoff_bound
-from converter.scene.model import Finish, Pigment, Polyhedron, Scene
+from converter.scene.model import Finish, Pigment, Scene
 from converter.scene.needs import SceneNeeds, is_index, scene_needs
 from converter.scene.notices import ior_notices, scene_notices
 from converter.scene.settings import Settings
+from converter.shapes.table import shape_kind
 
 
 def inspect_scene(scene: Scene, settings: Settings) -> dict[str, Any]:
@@ -26,7 +27,7 @@ def inspect_scene(scene: Scene, settings: Settings) -> dict[str, Any]:
         "finishes": _finishes(scene, needs, settings),
         "objects": {
             "count": len(scene.objects),
-            "kinds": dict(Counter(type(o.shape).__name__.lower() for o in scene.objects)),
+            "kinds": dict(Counter(shape_kind(o.shape).NAME for o in scene.objects)),
             "planes": sum(len(p["planes"]) + len(p["redundant_planes"]) for p in polyhedra),
             "redundant_planes": sum(len(p["redundant_planes"]) for p in polyhedra),
             "unbounded": sum(not p["bounded"] for p in polyhedra),
@@ -101,12 +102,12 @@ def _polyhedra(scene: Scene, needs: SceneNeeds) -> list[dict[str, Any]]:
             "object": i,
             "line": o.line,
             "planes": needs.planes[i],
-            "redundant_planes": sorted(set(range(len(o.shape.planes))).difference(needs.planes[i])),
+            "redundant_planes": sorted(set(range(len(planes))).difference(needs.planes[i])),
             "bounded": needs.bounded[i],
             "plate": needs.plates[i],
         }
         for i, o in enumerate(scene.objects)
-        if isinstance(o.shape, Polyhedron)
+        if (planes := shape_kind(o.shape).planes(o.shape))
     ]
 
 

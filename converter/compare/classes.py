@@ -31,9 +31,10 @@ from converter.compare.margins import (
 from converter.compare.metrics import LIMIT, Pixels, absolute_difference
 from converter.compare.rays import Pair, Ray, pair_trees
 from converter.pigments.table import pigment_kind
-from converter.scene.model import Polyhedron, Scene, Shape, Sphere
+from converter.scene.model import Scene, Shape
 from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings
+from converter.shapes.table import shape_kind
 
 if TYPE_CHECKING:
     from converter.renderers.methods import Method
@@ -219,7 +220,7 @@ class _Explainer:
         self._same_limits = len({(n.max_depth, each.cutoff) for n, each in zip(needs, settings, strict=True)}) == 1
         self._unit, self._hidden, self._moved, facets = ARITHMETICS[arithmetic]
         self._rounding = ROUNDINGS * self._unit
-        self._extents = [_extent(o.shape) for o in scene.objects]
+        self._extents = [shape_kind(o.shape).extent(o.shape) for o in scene.objects]
         self._deviations: list[float] = [0.0] * len(scene.objects)
         self._tilts: dict[tuple[int, int], float] = {}
         if self._moved:
@@ -362,15 +363,19 @@ class _Explainer:
     def _spread(self, ray: Ray, hit: Ray) -> Callable[[float], float]:
         """What an error of the ray's line makes of the position of its hit."""
         cosine = max(abs(float(np.dot(ray["direction"], hit["normal"]))), 1e-12)
-        shape = self._shape(hit["object"])
-        if isinstance(shape, Sphere):
-            return lambda off: min(off / cosine, off + math.sqrt(2 * shape.radius * off))
+        radius = self._radius(hit["object"])
+        if radius < math.inf:
+            return lambda off: min(off / cosine, off + math.sqrt(2 * radius * off))
         return lambda off: off / cosine
+
+    def _radius(self, index: int) -> float:
+        """The smallest radius of curvature of an object."""
+        shape = self._shape(index)
+        return shape_kind(shape).radius_of_curvature(shape)
 
     def _curvature(self, index: int) -> float:
         """By what angle the normal turns in a unit of length."""
-        shape = self._shape(index)
-        return 1 / shape.radius if isinstance(shape, Sphere) else 0.0
+        return 1 / self._radius(index)
 
     def _tilt(self, hit: Ray) -> float:
         """By what angle the normal at a hit may be off, where it is a triangle's."""
@@ -396,10 +401,9 @@ class _Explainer:
 
 def _tilts(shape: Shape, mesh: "PolyhedronMesh") -> Iterator[tuple[int, float]]:
     """For each plane that has triangles the largest angle between it and one of those, made of float32 corners."""
-    assert isinstance(shape, Polyhedron)
     corners = mesh.vertices.astype(np.float32).astype(np.float64)[mesh.triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals = np.array([plane[:3] for plane in shape.planes])[mesh.planes]
+    normals = np.array([plane[:3] for plane in shape_kind(shape).planes(shape)])[mesh.planes]
     with np.errstate(invalid="ignore", divide="ignore"):
         sines = np.linalg.norm(np.cross(across, normals), axis=1)
         angles = np.arctan2(sines, np.einsum("ij,ij->i", across, normals))
@@ -425,10 +429,3 @@ def _largest(one: Ray, other: Ray, color: str) -> float:
     """Largest difference of a colour; infinite where it is no number."""
     difference = max(abs(a - b) for a, b in zip(one[color], other[color], strict=True))
     return difference if difference == difference else math.inf
-
-
-def _extent(shape: Shape) -> float:
-    """The largest number that a shape is made of."""
-    if isinstance(shape, Sphere):
-        return max(map(abs, shape.center)) + shape.radius
-    return max(abs(plane[3]) / math.hypot(*plane[:3]) for plane in shape.planes)

@@ -7,6 +7,7 @@ from typing import Any, Literal
 
 from converter.compare.rays import Pair, Ray, walk
 from converter.scene.model import Scene
+from converter.shapes.table import shape_kind
 
 WIDTH = 120
 """Columns that the text is made for."""
@@ -29,7 +30,7 @@ class Line:
 def object_name(scene: Scene, index: int, plane: int | None = None) -> str:
     """`#11 plane 2 (27)`: an object by its index, a plane of it, and the line of the file it starts on."""
     o = scene.objects[index]
-    shape = type(o.shape).__name__.lower() if plane is None else f"plane {plane}"
+    shape = shape_kind(o.shape).NAME if plane is None else f"plane {plane}"
     return f"#{index} {shape}" + (f" ({o.line})" if o.line else "")
 
 

@@ -6,7 +6,7 @@ import numpy as np
 
 from converter.regions.region import Finding, Region, worst
 from converter.regions.situation import Floats, Situation
-from converter.scene.model import Polyhedron
+from converter.shapes.table import shape_kind
 
 MOST_PLANES = 256
 """Of a body that is looked into for how thin it is."""
@@ -61,9 +61,9 @@ def _small(s: Situation, limit: float) -> Iterator[Finding]:
 
 def _thin_glass(s: Situation, limit: float) -> Iterator[Finding]:
     shares = np.full(len(s.scene.objects), np.inf)
-    for i, o in enumerate(s.scene.objects):
-        clear = isinstance(o.shape, Polyhedron) and s.finish(i).kt > 0
-        if clear and s.needs.bounded[i] and not s.needs.plates[i] and len(s.needs.planes[i]) <= MOST_PLANES:
+    for i in range(len(s.scene.objects)):
+        looked_into = 0 < len(s.needs.planes[i]) <= MOST_PLANES
+        if s.finish(i).kt > 0 and s.needs.bounded[i] and not s.needs.plates[i] and looked_into:
             shares[i] = _thickness(s, i)
     for i, more in worst(shares, limit):
         text = f"is transparent and {shares[i]:.2g} thick, next to its coordinates and the camera's"
@@ -82,13 +82,13 @@ def _thickness(s: Situation, index: int) -> float:
     from native_tracer.halfspaces import polyhedron_faces
 
     shape = s.scene.objects[index].shape
-    assert isinstance(shape, Polyhedron)
-    points = [p for face in polyhedron_faces([shape.planes[k] for k in s.needs.planes[index]]) for p in face.points]
+    planes = shape_kind(shape).planes(shape)
+    points = [p for face in polyhedron_faces([planes[k] for k in s.needs.planes[index]]) for p in face.points]
     if not points:
         return np.inf
     corners: Floats = np.array(points).reshape(-1, 3)
-    planes = s.planes_of(index)
-    depths = (corners @ planes.normal.T + planes.offset).min(axis=0)
+    needed = s.planes_of(index)
+    depths = (corners @ needed.normal.T + needed.offset).min(axis=0)
     return float(-depths.max() / max(np.abs(corners).max(), s.reach))
 
 

@@ -6,6 +6,7 @@ import numpy as np
 
 from converter.regions.region import Finding, Region
 from converter.regions.situation import Floats, Situation
+from converter.shapes.table import shape_kind
 from native_tracer.incidence import surfaces_at
 
 
@@ -37,7 +38,7 @@ def _over_face(s: Situation, place: Floats, i: int) -> bool:
     if s.finish(index).kd == s.finish(index).ks == 0 or not np.all(own.heights(foot) <= room):
         return False
     shape = s.scene.objects[index].shape
-    return not surfaces_at(place, [getattr(shape, "planes", ())[s.planes.plane[i]]], [False])
+    return not surfaces_at(place, [shape_kind(shape).planes(shape)[s.planes.plane[i]]], [False])
 
 
 def _near_balls(s: Situation, limit: float) -> Iterator[Finding]:

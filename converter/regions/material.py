@@ -8,7 +8,7 @@ import numpy as np
 from converter.pigments.table import pigment_kind
 from converter.regions.region import Finding, Region, worst
 from converter.regions.situation import Floats, Situation
-from converter.scene.model import Polyhedron, Sphere
+from converter.shapes.table import shape_kind
 
 SEEN = 0.25
 """What the last of many bounces has to weigh for its errors to be plain."""
@@ -18,8 +18,7 @@ def _far_point(s: Situation, index: int) -> Floats:
     """Coordinates, without signs, as large as those of an object that are seen: of the foot of its planes' normals, and
     of its box where it is bounded.
     """
-    shape = s.scene.objects[index].shape
-    if isinstance(shape, Sphere) or s.needs.bounded[index]:
+    if s.needs.bounded[index]:
         box: Floats = np.abs([s.low[index], s.high[index]])
         return np.asarray(box.max(axis=0))
     planes = s.planes_of(index)
@@ -59,7 +58,7 @@ def _curved_mirrors(s: Situation, limit: float) -> Iterator[Finding]:
     if s.needs.max_depth <= bounces:
         return
     shiny = [i for i in range(len(s.scene.objects)) if _shiny(s, i, bounces)]
-    balls = [i for i in shiny if isinstance(s.scene.objects[i].shape, Sphere)]
+    balls = sorted(set(shiny).intersection(s.bodies.object[s.bodies.is_ball].tolist()))
     if len(balls) >= 2 and any(_encloses(s, i) for i in shiny):
         text = f"object {balls[0]} is one of {len(balls)} balls that reflect each other in a closed room"
         yield Finding(
@@ -72,7 +71,7 @@ def _plane_mirrors(s: Situation, limit: float) -> Iterator[Finding]:
     if s.needs.max_depth <= bounces:
         return
     for i, o in enumerate(s.scene.objects):
-        if isinstance(o.shape, Polyhedron) and _shiny(s, i, bounces):
+        if s.needs.planes[i] and _shiny(s, i, bounces):
             text = f"object {i} is a mirror that is followed for {s.needs.max_depth} bounces (more than {bounces:.0f})"
             yield Finding(o.line, text)
             return
@@ -80,9 +79,7 @@ def _plane_mirrors(s: Situation, limit: float) -> Iterator[Finding]:
 
 def _encloses(s: Situation, index: int) -> bool:
     shape = s.scene.objects[index].shape
-    if isinstance(shape, Sphere):
-        return math.dist(s.scene.camera.eye, shape.center) < shape.radius
-    return s.needs.bounded[index] and bool((s.planes_of(index).heights(s.eye) < 0).all())
+    return s.needs.bounded[index] and shape_kind(shape).contains(shape, s.scene.camera.eye)
 
 
 REGIONS = (

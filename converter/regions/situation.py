@@ -6,9 +6,10 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from converter.scene.model import Finish, Polyhedron, Scene, Sphere
+from converter.scene.model import Finish, Scene
 from converter.scene.needs import SceneNeeds, scene_needs
 from converter.scene.settings import Settings
+from converter.shapes.table import shape_kind
 
 Floats = NDArray[np.float64]
 Integers = NDArray[np.intp]
@@ -101,18 +102,18 @@ def _bodies(scene: Scene, boxes: Floats, bounded: NDArray[np.bool_]) -> Bodies:
     radius = np.linalg.norm(boxes[:, 1] / 2 - boxes[:, 0] / 2, axis=1)
     is_ball = np.zeros(len(scene.objects), dtype=np.bool_)
     for i, o in enumerate(scene.objects):
-        if isinstance(o.shape, Sphere):
-            center[i], radius[i], is_ball[i] = o.shape.center, o.shape.radius, True
+        if ball := shape_kind(o.shape).ball(o.shape):
+            center[i], radius[i], is_ball[i] = *ball, True
     object = np.flatnonzero(bounded & (radius > 0))
     return Bodies(object, center[object], radius[object], is_ball[object])
 
 
 def _planes(scene: Scene, needs: SceneNeeds) -> Planes:
     kept = [
-        (i, k, *o.shape.planes[k])
-        for i, (o, planes) in enumerate(zip(scene.objects, needs.planes, strict=True))
-        if isinstance(o.shape, Polyhedron)
-        for k in planes
+        (i, k, *planes[k])
+        for i, (o, needed) in enumerate(zip(scene.objects, needs.planes, strict=True))
+        for planes in (shape_kind(o.shape).planes(o.shape),)
+        for k in needed
     ]
     rows = np.array([row[2:] for row in kept], dtype=np.float64).reshape(-1, 4)
     rows = rows / np.abs(rows[:, :3]).max(axis=1, initial=0.0, keepdims=True)

@@ -7,8 +7,7 @@ import numpy as np
 
 from converter.regions.region import Finding, Region, worst
 from converter.regions.situation import Floats, Situation
-from converter.scene.model import Sphere
-from native_tracer.incidence import surfaces_at
+from converter.shapes.table import shape_kind
 
 _NOISE = 2.0**-48
 """What a computed distance may be off, as a share of coordinates."""
@@ -132,8 +131,7 @@ def _too_near(s: Situation, shares: Floats, limit: float) -> Iterator[Finding]:
 
 def _lies_on(s: Situation, index: int) -> bool:
     shape = s.scene.objects[index].shape
-    rows = [(*shape.center, shape.radius)] if isinstance(shape, Sphere) else list(shape.planes)
-    return bool(surfaces_at(s.eye, rows, [isinstance(shape, Sphere)] * len(rows)))
+    return shape_kind(shape).lies_on(shape, s.scene.camera.eye)
 
 
 REGIONS = (

@@ -8,8 +8,9 @@ from dataclasses import dataclass, field, replace
 from typing import Any, Literal
 
 from converter.renderers.base import Renderer
-from converter.scene.model import Polyhedron, Scene
+from converter.scene.model import Scene
 from converter.scene.settings import Settings
+from converter.shapes.table import shape_kind
 
 Family = Literal["native", "mitsuba", "povray"]
 Arithmetic = Literal["double", "float", "mesh", "offset", "ulp"]
@@ -79,7 +80,7 @@ class Method:
         """Why the method is not for `scene`; None if it is."""
         if self.most_surfaces is None:
             return None
-        count = sum(len(o.shape.planes) if isinstance(o.shape, Polyhedron) else 1 for o in scene.objects)
+        count = sum(shape_kind(o.shape).count(o.shape) for o in scene.objects)
         if count <= self.most_surfaces:
             return None
         return f"{count} spheres and planes would take too long to compile"

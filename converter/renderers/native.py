@@ -10,9 +10,10 @@ from typing import Any, Literal
 from converter.pigments.table import pigment_kind
 from converter.renderers.base import Interrupted, Progress, RendererUnavailable, Rendering
 from converter.scene.coplanar import with_planes_shared
-from converter.scene.model import Object, Scene, Sphere
+from converter.scene.model import Scene
 from converter.scene.needs import SceneNeeds, scene_needs
 from converter.scene.settings import Settings
+from converter.shapes.table import shape_kind
 
 Precision = Literal["float", "double", "long double"]
 Search = Literal["auto", "brute", "bvh"]
@@ -153,16 +154,9 @@ def build_scene(scene: Scene, needs: SceneNeeds) -> Any:
     for i in needs.finishes:
         f = scene.finishes[i]
         finishes[i] = native.add_finish(f.ka, f.kd, f.ks, f.alpha, f.kr, f.kt, needs.etas[i])
-    for o, planes in zip(with_planes_shared(scene).objects, needs.planes, strict=True):
-        _add_object(native, o, planes, pigments[o.pigment], finishes[o.finish])
+    for o, facts in zip(with_planes_shared(scene).objects, needs.facts, strict=True):
+        shape_kind(o.shape).add_to(native, o.shape, facts, pigments[o.pigment], finishes[o.finish])
     return native
-
-
-def _add_object(native: Any, o: Object, planes: tuple[int, ...], pigment: int, finish: int) -> None:
-    if isinstance(o.shape, Sphere):
-        native.add_sphere(pigment, finish, o.shape.center, o.shape.radius)
-    else:
-        native.add_polyhedron(pigment, finish, [o.shape.planes[k] for k in planes])
 
 
 def _restore_planes(rays: list[dict[str, Any]], needs: SceneNeeds) -> None:

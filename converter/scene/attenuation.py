@@ -2,8 +2,9 @@
 
 import math
 
-from converter.scene.model import Light, Object, Sphere, Vector
+from converter.scene.model import Light, Object, Vector
 from converter.scene.needs import SceneNeeds
+from converter.shapes.table import shape_kind
 
 SLACK = 2.0**-40
 """Part of a distance that its rounding, and a hit point's, may amount to."""
@@ -29,21 +30,6 @@ def least_divisor(light: Light, o: Object, needs: SceneNeeds, index: int) -> flo
 
 def _distances(point: Vector, o: Object, needs: SceneNeeds, index: int) -> tuple[float, float]:
     """Bounds of the distance between a point and the points of an object's surface."""
-    size = max(map(abs, point))
-    if isinstance(o.shape, Sphere):
-        apart = math.dist(point, o.shape.center)
-        nearest, farthest = abs(apart - o.shape.radius), apart + o.shape.radius
-        size += apart
-    else:
-        excesses = []
-        for k in needs.planes[index]:
-            a, b, c, d = o.shape.planes[k]
-            length = math.hypot(a, b, c)
-            excesses.append((a * point[0] + b * point[1] + c * point[2] + d) / length)
-            size = max(size, abs(d) / length)
-        nearest = abs(max(excesses))
-        low, high = needs.boxes[index]
-        corner = (max(abs(x - p), abs(y - p)) for p, x, y in zip(point, low, high, strict=True))
-        farthest = math.hypot(*corner) if needs.bounded[index] else math.inf
-    slack = SLACK * size
-    return max(0.0, nearest - slack), farthest + slack
+    found = shape_kind(o.shape).distances(o.shape, needs.facts[index], point)
+    slack = SLACK * found.largest
+    return max(0.0, found.nearest - slack), found.farthest + slack

@@ -12,7 +12,9 @@ from dataclasses import replace
 from itertools import pairwise
 from math import hypot
 
-from converter.scene.model import Plane, Polyhedron, Scene
+from converter.scene.geometry import scene_facts
+from converter.scene.model import Plane, Scene
+from converter.shapes.table import shape_kind
 
 _EPSILON = 2.0**-52
 _SAME = 4 * _EPSILON
@@ -50,22 +52,17 @@ def _with_planes(scene: Scene, changed: dict[_Place, Plane]) -> Scene:
         return scene
     objects = list(scene.objects)
     for i in {i for i, _ in changed}:
-        shape = objects[i].shape
-        assert isinstance(shape, Polyhedron)
-        planes = tuple(changed.get((i, k), plane) for k, plane in enumerate(shape.planes))
-        objects[i] = replace(objects[i], shape=Polyhedron(planes))
+        shape, kind = objects[i].shape, shape_kind(objects[i].shape)
+        planes = [changed.get((i, k), plane) for k, plane in enumerate(kind.planes(shape))]
+        objects[i] = replace(objects[i], shape=kind.with_planes(shape, planes))
     return replace(scene, objects=tuple(objects))
 
 
 def _plate_backs(scene: Scene) -> dict[_Place, Plane]:
     """For the second side of each plate the first one, facing away, unless it is that already."""
-    if not any(isinstance(o.shape, Polyhedron) for o in scene.objects):
-        return {}
-    from converter.scene.geometry import scene_facts
-
     found: dict[_Place, Plane] = {}
     for i, fact in enumerate(scene_facts(scene)):
-        if fact is not None and fact.plate:
+        if fact.plate:
             front, back = fact.plate
             a, b, c, d = _plane(scene, (i, front))
             if _plane(scene, (i, back)) != (-a, -b, -c, -d):
@@ -79,8 +76,7 @@ def _clusters(scene: Scene) -> Iterator[list[_Place]]:
     probed = sorted(
         (abs(a * p[0] + b * p[1] + c * p[2] + d * p[3]) / hypot(p[0], p[1], p[2]), (i, k))
         for i, o in enumerate(scene.objects)
-        if isinstance(o.shape, Polyhedron)
-        for k, p in enumerate(o.shape.planes)
+        for k, p in enumerate(shape_kind(o.shape).planes(o.shape))
     )
     cluster: list[_Place] = []
     for (before, place), (after, next_place) in pairwise(probed):
@@ -96,8 +92,7 @@ def _clusters(scene: Scene) -> Iterator[list[_Place]]:
 
 def _plane(scene: Scene, place: _Place) -> Plane:
     shape = scene.objects[place[0]].shape
-    assert isinstance(shape, Polyhedron)
-    return shape.planes[place[1]]
+    return shape_kind(shape).planes(shape)[place[1]]
 
 
 def _as_written(plane: Plane, head: Plane) -> Plane | None:

@@ -1,11 +1,10 @@
 """Lights that light nothing, and cameras that see nothing, since a body shuts them in or out."""
 
-import math
-
 from converter.scene.errors import place
-from converter.scene.model import Scene, Sphere, Vector
+from converter.scene.model import Scene, Vector
 from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings
+from converter.shapes.table import shape_kind
 
 
 def enclosure_notices(scene: Scene, settings: Settings) -> tuple[str, ...]:
@@ -30,7 +29,7 @@ def enclosure_notices(scene: Scene, settings: Settings) -> tuple[str, ...]:
         found.append(f"{place(scene.file, line)}: light {k + 1} {what}")
     for i in around:
         finish = scene.finishes[scene.objects[i].finish]
-        alone = not any(_contains(scene, i, _inner_point(scene, settings, k)) for k in bodies if k != i)
+        alone = not any(_contains(scene, i, needs.facts[k].inside) for k in bodies if k != i)
         if finish.kt == 0 and alone and len(scene.objects) > 1:
             found.append(
                 f"{place(scene.file, scene.objects[i].line)}: object {i} has the camera inside, and nothing else"
@@ -40,20 +39,7 @@ def enclosure_notices(scene: Scene, settings: Settings) -> tuple[str, ...]:
 
 def _contains(scene: Scene, i: int, p: Vector) -> bool:
     shape = scene.objects[i].shape
-    if isinstance(shape, Sphere):
-        return math.dist(p, shape.center) < shape.radius
-    return all(a * p[0] + b * p[1] + c * p[2] + d < 0 for a, b, c, d in shape.planes)
-
-
-def _inner_point(scene: Scene, settings: Settings, i: int) -> Vector:
-    """A point of an object: of a ball its centre, of a polyhedron one well inside."""
-    from converter.scene.geometry import scene_facts
-
-    shape, fact = scene.objects[i].shape, scene_facts(scene)[i]
-    if isinstance(shape, Sphere):
-        return shape.center
-    assert fact is not None
-    return fact.inside
+    return shape_kind(shape).contains(shape, p)
 
 
 def _object(scene: Scene, i: int) -> str:

@@ -3,23 +3,22 @@
 A reader function takes a `Reader`, the index of the entry's first word and the entry's number in its section, and gives
 the entry and the index after its last word. What is wrong with a value is noted, and reading goes on with NaN in its
 place; where the words no longer say what belongs to what, `Lost` is raised, and the caller looks for the next place
-that can be read. A new pigment or shape is one such function and one line in `PIGMENTS` or `SHAPES`.
+that can be read. How each kind of pigment and shape is read stands in `converter.pigments` and `converter.shapes`.
 """
 
-from collections.abc import Callable
 from math import hypot, sqrt
 
 from converter.pigments.table import PIGMENT_KINDS, PIGMENT_WORDS
 from converter.scene.errors import shown
 from converter.scene.fields import RGB, Lost, Numbers
-from converter.scene.model import Camera, Finish, Light, Object, Pigment, Plane, Polyhedron, Shape, Sphere, Vector
-from converter.scene.reader import FINISH_INDEX, KEYWORDS, NOT_YET, PIGMENT_INDEX, Reader
-from converter.scene.tokens import either, found, whole
+from converter.scene.model import Camera, Finish, Light, Object, Pigment, Shape, Vector
+from converter.scene.reader import FINISH_INDEX, NOT_YET, PIGMENT_INDEX, Reader
+from converter.scene.tokens import either, found
+from converter.shapes.table import SHAPE_KINDS, SHAPE_READERS
 
-MOST_PLANES = 1024
-"""Planes that are read at once."""
 PIGMENT_NAMES = either(kind.SPELLINGS[0] for kind in PIGMENT_KINDS.values())
-OBJECT_HEAD = (PIGMENT_INDEX, FINISH_INDEX, "sphere or polyhedron")
+SHAPE_NAMES = either(kind.NAME for kind in SHAPE_KINDS.values())
+OBJECT_HEAD = (PIGMENT_INDEX, FINISH_INDEX, SHAPE_NAMES)
 
 
 EYE = Numbers("the eye", "x, y and z", ("x", "y", "z"))
@@ -33,8 +32,6 @@ LIGHT = Numbers(
     ("x", "y", "z", *RGB, "constant attenuation", "linear attenuation", "quadratic attenuation"),
 )
 FINISH = Numbers("a finish", "ka, kd, ks, alpha, kr, kt and ior", ("ka", "kd", "ks", "alpha", "kr", "kt", "ior"))
-SPHERE = Numbers("sphere", "its centre and radius", ("x", "y", "z", "radius"))
-PLANE = Numbers("a plane", "a, b, c and d", ("a", "b", "c", "d"))
 
 
 # ---------------------------------------------------------------------------------------------------- camera, lights
@@ -123,74 +120,16 @@ def object_(reader: Reader, at: int, k: int) -> tuple[Object | None, int]:
     pigment = reader.index(at, first, PIGMENT_INDEX, reader.pigments)
     finish = reader.index(at + 1, second, FINISH_INDEX, reader.finishes)
     shape: Shape | None
-    if word in SHAPES:
-        shape, end = SHAPES[word](reader, at + 2)
+    if word in SHAPE_READERS:
+        shape, end = SHAPE_READERS[word](reader, at + 2)
     elif word == "quadric":
         reader.complain(at + 2, f"quadric is {NOT_YET}")
         shape, end = None, reader.after(at, 13)
     elif word == "csg":
         raise Lost(at + 2, f"csg is {NOT_YET}")
     else:
-        raise Lost(at + 2, f"expected sphere or polyhedron, {found(word, SHAPES)}")
+        raise Lost(at + 2, f"expected {SHAPE_NAMES}, {found(word, SHAPE_READERS)}")
     if reader.text.peek(end) == "move" and end < reader.limit:
         reader.complain(end, f"move is {NOT_YET}")
         end = reader.after(end, 4)
     return (None if shape is None else Object(pigment, finish, shape, reader.text.line(at))), end
-
-
-def _sphere(reader: Reader, at: int) -> tuple[Shape, int]:
-    x, y, z, radius = reader.numbers(at + 1, SPHERE, at)
-    if radius <= 0:
-        reader.complain(at + 4, f"the radius must be above 0, found {shown(reader.text[at + 4])}")
-    return Sphere((x, y, z), radius), at + 5
-
-
-def _polyhedron(reader: Reader, at: int) -> tuple[Shape, int]:
-    word = reader.word(at + 1, "the polyhedron's number of planes")
-    count = whole(word)
-    if not count:
-        raise Lost(at + 1, f"the polyhedron's number of planes must be a whole number from 1 on, found {shown(word)}")
-    head = at + 1
-    at += 2
-    planes: list[Plane] = []
-    while len(planes) < count:
-        size = min(count - len(planes), MOST_PLANES)
-        if values := reader.good_numbers(at, 4 * size):
-            several = list(zip(values[::4], values[1::4], values[2::4], values[3::4], strict=True))
-            if not any(a == b == c == 0 for a, b, c, _ in several):
-                planes += several
-                at += 4 * size
-                continue
-        for _ in range(size):
-            following = reader.text.cut(at, max(0, min(3, reader.limit - at)))
-            if not following or following[0] in KEYWORDS or (following[2:] and following[2] in SHAPES):
-                raise Lost(head, f"{announced(word)}, found {len(planes)} before {reader.ending(at)}")
-            planes.append(_plane_of(reader, at))
-            at += 4
-    return Polyhedron(tuple(planes)), at
-
-
-def _plane(reader: Reader, at: int) -> tuple[Shape, int]:
-    """A half-space as some other programs of the course have it."""
-    plane = _plane_of(reader, at + 1)
-    reader.plane_lines.append(reader.text.line(at))
-    return Polyhedron((plane,)), at + 5
-
-
-def _plane_of(reader: Reader, at: int) -> Plane:
-    a, b, c, d = reader.numbers(at, PLANE, at)
-    if a == b == c == 0:
-        reader.complain(at, "a plane's normal (its first three numbers) must not be zero")
-    return a, b, c, d
-
-
-def announced(word: str) -> str:
-    """`5 planes are announced`, for the word that says so."""
-    return f"{shown(word)[1:-1]} {'plane is' if whole(word) == 1 else 'planes are'} announced"
-
-
-SHAPES: dict[str, Callable[[Reader, int], tuple[Shape, int]]] = {
-    "sphere": _sphere,
-    "polyhedron": _polyhedron,
-    "plane": _plane,  # found in real files: a polyhedron of one plane
-}

@@ -2,10 +2,11 @@
 
 from converter.scene.enclosure import enclosure_notices
 from converter.scene.errors import place, so_are
-from converter.scene.model import Polyhedron, Scene
+from converter.scene.model import Scene
 from converter.scene.needs import is_index, scene_needs
 from converter.scene.oddities import oddity_notices
 from converter.scene.settings import Settings
+from converter.shapes.table import shape_kind
 
 
 def scene_notices(scene: Scene, settings: Settings) -> list[str]:
@@ -42,9 +43,8 @@ def _plate_notices(scene: Scene, settings: Settings) -> list[str]:
     if not found:
         return []
     i = found[0]
-    shape = scene.objects[i].shape
-    assert isinstance(shape, Polyhedron)
-    sides = " and ".join(f"{k} ({' '.join(f'{x:.12g}' for x in shape.planes[k])})" for k in plates[i])
+    planes = shape_kind(scene.objects[i].shape).planes(scene.objects[i].shape)
+    sides = " and ".join(f"{k} ({' '.join(f'{x:.12g}' for x in planes[k])})" for k in plates[i])
     where = place(scene.file, scene.objects[i].line)
     what = f"object {i} is a plate without thickness, seen from both sides: its planes {sides} touch"
     return [f"{where}: {what}{so_are(len(found) - 1)}"]

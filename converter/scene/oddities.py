@@ -11,12 +11,11 @@ from typing import NamedTuple
 from converter.pigments.table import pigment_kind
 from converter.scene.attenuation import least_divisor
 from converter.scene.errors import place, so_are
-from converter.scene.model import Color, Plane, Polyhedron, Scene, Vector
+from converter.scene.model import Color, Plane, Scene, Vector
 from converter.scene.needs import SceneNeeds, scene_needs
 from converter.scene.settings import Settings
+from converter.shapes.table import shape_kind
 
-MOST_PLANES = 64
-"""Of a polyhedron whose planes are turned one by one, to see whether that bounds it."""
 BRIGHTEST, BRIGHTEST_LIGHT = 2.0, 10.0
 """Largest channel of a pigment or the ambient light, and of a light that distance does not dim: 1 is white, somewhat
 more is used for glow, and what counts up to 255 is far beyond."""
@@ -35,7 +34,7 @@ def oddity_notices(scene: Scene, settings: Settings) -> tuple[str, ...]:
     """A line for each kind of oddity, with the place of the first, and how many more there are."""
     needs = scene_needs(scene, settings)
     kinds = (
-        _turned_planes(scene, needs),
+        _odd_shapes(scene, needs),
         _pigment_colors(scene, needs),
         _light_colors(scene),
         _gains(scene, needs),
@@ -57,29 +56,10 @@ def _line(lines: tuple[int, ...], index: int) -> int:
 # ---- Shapes ----------------------------------------------------------------------------------------------------------
 
 
-def _turned_planes(scene: Scene, needs: SceneNeeds) -> Iterator[_Oddity]:
-    """Polyhedra without bounds that are bounded with one of their planes turned, and with no other.
-
-    A column, which some scenes stand on, is not, whatever is turned.
-    """
-    from native_tracer.halfspaces import polyhedron_facts
-
+def _odd_shapes(scene: Scene, needs: SceneNeeds) -> Iterator[_Oddity]:
     for i, o in enumerate(scene.objects):
-        if not isinstance(o.shape, Polyhedron) or needs.bounded[i] or not 4 <= len(o.shape.planes) <= MOST_PLANES:
-            continue
-        planes = o.shape.planes
-        tried = needs.planes[i]
-        facts = polyhedron_facts([[_turned(p) if j == k else p for j, p in enumerate(planes)] for k in tried])
-        bounding = [k for k, fact in zip(tried, facts, strict=True) if fact.solid and fact.bounded]
-        if len(bounding) == 1:
-            k = bounding[0]
-            text = f"object {i} goes on without end, and would not if the signs of its plane {k} were turned"
-            yield _Oddity(o.line, f"{text}, to {' '.join(f'{x:.12g}' for x in _turned(planes[k]))}")
-
-
-def _turned(plane: Plane) -> Plane:
-    a, b, c, d = (0.0 - x for x in plane)  # 0, and not -0
-    return (a, b, c, d)
+        if text := shape_kind(o.shape).oddity(o.shape, needs.facts[i]):
+            yield _Oddity(o.line, f"object {i} {text}")
 
 
 # ---- Colours ---------------------------------------------------------------------------------------------------------
@@ -189,12 +169,7 @@ def _through(point: Vector, normal: Vector) -> Plane:
 def _reaches(scene: Scene, i: int, half_spaces: list[Plane]) -> bool:
     """Whether an object may reach into the intersection of some half-spaces, whose normals have length 1."""
     shape = scene.objects[i].shape
-    if isinstance(shape, Polyhedron):
-        from native_tracer.halfspaces import polyhedron_facts
-
-        return polyhedron_facts([[*shape.planes, *half_spaces]])[0].drawn
-    x, y, z = shape.center
-    return all(a * x + b * y + c * z + d <= shape.radius + 1e-9 * abs(d) for a, b, c, d in half_spaces)
+    return shape_kind(shape).reaches(shape, half_spaces)
 
 
 def _difference(p: Vector, q: Vector) -> Vector:

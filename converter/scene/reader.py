@@ -20,13 +20,13 @@ from converter.scene.tokens import (
     whole,
     why_no_number,
 )
+from converter.shapes.table import SHAPE_READERS
 
 NOT_YET = "an addition to the format that is not supported yet"
 MOST_NOTED = 1000
 """Problems that are kept, so that a large file of nothing else takes little room: those told are the first of them."""
 PIGMENT_INDEX, FINISH_INDEX = "the pigment index", "the finish index"
-SHAPE_WORDS = ("sphere", "polyhedron", "plane")
-KEYWORDS = frozenset([*PIGMENT_WORDS, *SHAPE_WORDS, "quadric", "csg", "move"])
+KEYWORDS = frozenset([*PIGMENT_WORDS, *SHAPE_READERS, "quadric", "csg", "move"])
 """Words that never stand where a number belongs: a number that is missing before one is noticed there."""
 
 _DIGITS = {sign + str(k): float(sign + str(k)) for sign in ("", "-") for k in range(10)}
@@ -174,6 +174,11 @@ class Reader:
     def is_stray_name(self, word: str) -> bool:
         """Whether a word means to be a name, and is no keyword."""
         return is_name(word) and word not in KEYWORDS
+
+    def begins_entry(self, at: int) -> bool:
+        """Whether another entry, or nothing, begins at the word `at`, where a number belongs."""
+        following = self.text.cut(at, max(0, min(3, self.limit - at)))
+        return not following or following[0] in KEYWORDS or (len(following) > 2 and following[2] in SHAPE_READERS)
 
     def index(self, at: int, word: str, what: str, count: int) -> int:
         """The index that the word `at` is, of one of `count` things; `what` is its name."""

@@ -5,12 +5,13 @@ from typing import Any, NamedTuple
 
 from converter.pigments.table import PIGMENT_WORDS
 from converter.scene import entries
-from converter.scene.entries import FINISH, LIGHT, PLANE, announced
+from converter.scene.entries import FINISH, LIGHT
 from converter.scene.errors import place, shown
 from converter.scene.fields import Lost
 from converter.scene.model import Object, Polyhedron
 from converter.scene.reader import Reader, is_name
 from converter.scene.tokens import HUGE, hint, number, whole, why_no_number
+from converter.shapes.polyhedron import PLANE, announced
 
 Line = list[str]
 

@@ -1,8 +1,9 @@
 """Writes scenes as course scene files."""
 
 from converter.pigments.table import pigment_kind
-from converter.scene.model import Object, Polyhedron, Scene, Shape, Sphere
+from converter.scene.model import Scene
 from converter.scene.numerals import numerals
+from converter.shapes.table import shape_kind
 
 
 def write_scene(scene: Scene) -> str:
@@ -25,16 +26,7 @@ def write_scene(scene: Scene) -> str:
     lines += ["", str(len(scene.finishes))]
     lines += [numerals(f.ka, f.kd, f.ks, f.alpha, f.kr, f.kt, f.ior) for f in scene.finishes]
     lines += ["", str(len(scene.objects))]
-    for object_ in scene.objects:
-        lines += _object(object_)
+    for o in scene.objects:
+        first, *others = shape_kind(o.shape).write(o.shape)
+        lines += [f"{o.pigment} {o.finish} {first}", *others]
     return "\n".join(lines) + "\n"
-
-
-def _object(object_: Object) -> list[str]:
-    shape: Shape = object_.shape
-    head = f"{object_.pigment} {object_.finish}"
-    match shape:
-        case Sphere(center, radius):
-            return [f"{head} sphere {numerals(*center, radius)}"]
-        case Polyhedron(planes):
-            return [f"{head} polyhedron {len(planes)}", *(numerals(*plane) for plane in planes)]

@@ -7,8 +7,9 @@ import numpy as np
 
 from converter.errors import ExportError
 from converter.pigments.table import pigment_kind
-from converter.scene.model import Light, Object, Polyhedron, Scene, Sphere, Vector
+from converter.scene.model import Light, Object, Scene, Vector
 from converter.scene.needs import SceneNeeds
+from converter.shapes.table import shape_kind
 
 NEAREST, FARTHEST = 1e-3, 1e7
 """Distances between which POV-Ray sees everything."""
@@ -35,14 +36,11 @@ def scaled(scene: Scene, factor: float) -> Scene:
         return replace(source, position=times(source.position), attenuation=(a, b / factor, c / factor**2))
 
     def object_(source: Object) -> Object:
-        match source.shape:
-            case Sphere(center, radius):
-                return replace(source, shape=Sphere(times(center), factor * radius))
-            case Polyhedron(planes):
-                moved = tuple((a, b, c, factor * d) for a, b, c, d in planes)
-                if not all(math.isfinite(d) for _, _, _, d in moved):
-                    raise ExportError("POV-Ray's numbers do not hold this scene: a plane would be too far away")
-                return replace(source, shape=Polyhedron(moved))
+        kind = shape_kind(source.shape)
+        shape = kind.scaled(source.shape, factor)
+        if not all(math.isfinite(d) for *_, d in kind.planes(shape)):
+            raise ExportError("POV-Ray's numbers do not hold this scene: a plane would be too far away")
+        return replace(source, shape=shape)
 
     return replace(
         scene,

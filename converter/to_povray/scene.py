@@ -10,13 +10,14 @@ from converter.pigments.table import pigment_kind
 from converter.scene.model import Object, Scene
 from converter.scene.needs import SceneNeeds, scene_needs
 from converter.scene.settings import Settings
+from converter.shapes.table import shape_kind
 from converter.to_povray.camera import camera
 from converter.to_povray.finishes import finish, transmission
 from converter.to_povray.image_maps import Image
 from converter.to_povray.interiors import interiors
 from converter.to_povray.lights import light
 from converter.to_povray.scale import FARTHEST, NEAREST, has_horizon, reach, scaled, suitable_scale
-from converter.to_povray.surfaces import object_, surface
+from converter.to_povray.surfaces import object_
 from converter.to_povray.text import number, rgb
 
 MARK = "// Written by whitted convert"
@@ -164,7 +165,8 @@ def _objects(scene: Scene, needs: SceneNeeds, omissions: list[str]) -> str:
 
     def block(i: int, o: Object) -> str:
         texture = _texture(o.finish, o.pigment)
-        return object_(f"Object_{i}", surface(o.shape, needs, i), texture, inner.get(i), needs.lit)
+        shape = shape_kind(o.shape).povray(o.shape, needs.facts[i])
+        return object_(f"Object_{i}", shape, texture, inner.get(i), needs.lit)
 
     return "".join(block(i, o) for i, o in enumerate(scene.objects))
 
