@@ -705,7 +705,7 @@ def test_pixel_by_two_methods_of_one_initial(whitted, scene, monkeypatch):
 
     def wrong(self, *arguments):
         tree = right(self, *arguments)
-        tree["rays"][0]["hit"]["t"] += 0.25 if self.precision == "float" else 0.0
+        tree.rays[0].hit.t += 0.25 if self.precision == "float" else 0.0
         return tree
 
     monkeypatch.setattr(NativeRenderer, "trace_pixel", wrong)
@@ -742,7 +742,7 @@ def test_pixel_marks_and_tells_the_first_difference(whitted, scene, monkeypatch)
 
     def wrong(self, scene, settings, x, y):
         tree = NativeRenderer().trace_pixel(scene, settings, x, y)
-        tree["rays"][0]["hit"]["t"] += 0.25
+        tree.rays[0].hit.t += 0.25
         return tree
 
     monkeypatch.setattr(MitsubaRenderer, "trace_pixel", wrong)

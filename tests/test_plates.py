@@ -164,4 +164,4 @@ def test_a_plate_is_written_and_read_again():
     assert parse_scene(write_scene(made)) == made
     assert scene_needs(made, SETTINGS).bounded == (True, True, True)
     assert cutoff_bound(made, Settings()).bound < 1
-    assert NativeRenderer().trace_pixel(made, SETTINGS, 40, 30)["rays"][0]["hit"]["plane"] == 2
+    assert NativeRenderer().trace_pixel(made, SETTINGS, 40, 30).rays[0].hit.plane == 2

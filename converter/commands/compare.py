@@ -28,6 +28,7 @@ from converter.commands.options import (
 )
 from converter.commands.results import Result, TextResult
 from converter.descriptors import STANDARD_OUTPUT
+from converter.renderers.base import tells_rays
 
 if TYPE_CHECKING:
     from converter.compare.classes import Explanation
@@ -371,7 +372,7 @@ def _print_what_to_do(
     """How to see the rays behind the largest difference, with the options in force."""
     if compared.candidate is not None:
         print("An image has no rays: only of two methods is told why pixels disagree.")
-    if not all(hasattr(method.renderer, "trace_pixel") for method in chosen):
+    if not all(tells_rays(method.renderer) for method in chosen):
         return
     found = report.difference
     place = map(str, (found.largest.x, found.largest.y, found.width, found.height))

@@ -3,17 +3,19 @@
 import argparse
 from array import array
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from converter.commands.exits import OK, UsageError
 from converter.commands.method_options import add_method_options, check_variant, choose, native_instead
 from converter.commands.options import Parser, add_reading_options, add_size, position, settings_from
 from converter.commands.results import TextResult
 from converter.descriptors import STANDARD_OUTPUT
+from converter.renderers.base import RayTeller, tells_rays
 
 if TYPE_CHECKING:
     from converter.compare.ray_listing import Line
     from converter.compare.rays import Pair
+    from converter.renderers.records import PixelRecord
     from converter.scene.model import Scene
 
 
@@ -52,20 +54,21 @@ def run(arguments: argparse.Namespace) -> int:
     methods = list(dict.fromkeys((arguments.reference, arguments.method)))
     check_variant(arguments, methods)
     chosen = [choose(method, arguments) for method in methods]
-    tracers: dict[str, Any] = {c.name: getattr(c.renderer, "trace_pixel", None) for c in chosen}
-    for name, tracer in tracers.items():
-        if tracer is None:
+    tellers: dict[str, RayTeller] = {}
+    for name, renderer, _ in chosen:
+        if not tells_rays(renderer):
             raise UsageError(f"{name} does not tell its rays")
+        tellers[name] = renderer
 
     from converter.commands.json_out import check_json, write_json
     from converter.commands.notes import load_with_notices
 
     check_json(arguments.json, [arguments.scene])
     scene = load_with_notices(arguments.scene, settings, arguments.quiet)
-    traced: dict[str, dict[str, Any]] = {}
+    traced: dict[str, PixelRecord] = {}
     for name, _, changed in chosen:
         with native_instead(name):
-            traced[name] = tracers[name](scene, changed, x, y)
+            traced[name] = tellers[name].trace_pixel(scene, changed, x, y)
     if arguments.json != STANDARD_OUTPUT:
         print(f"{arguments.scene} at {settings.width} x {settings.height}, pixel ({x}, {y}): {' | '.join(traced)}\n")
         _list(scene, traced)
@@ -73,12 +76,12 @@ def run(arguments: argparse.Namespace) -> int:
     return OK
 
 
-def _list(scene: "Scene", traced: dict[str, dict[str, Any]]) -> None:
+def _list(scene: "Scene", traced: dict[str, "PixelRecord"]) -> None:
     from converter.compare.ray_listing import list_rays
     from converter.compare.rays import first_unequal, pair_trees
     from native_tracer import quantize
 
-    names, trees = list(traced), [tree["rays"] for tree in traced.values()]
+    names, trees = list(traced), [tree.rays for tree in traced.values()]
     pairs = pair_trees(trees[0], trees[-1])
     first = first_unequal(pairs)
     letters = (names[0][0], names[-1][0])
@@ -87,7 +90,7 @@ def _list(scene: "Scene", traced: dict[str, dict[str, Any]]) -> None:
     print()
     width = max(map(len, names))
     for name, tree in traced.items():
-        color = tree["color"]
+        color = tree.color
         quantized = quantize(array("f", color))
         levels = " ".join(
             f"{b:3}" if channel == channel else "NaN" for b, channel in zip(quantized, color, strict=True)
@@ -112,7 +115,7 @@ def _print_difference(first: "Pair | None", scene: "Scene", names: list[str]) ->
             values = ["nothing" if value is None else object_name(scene, value) for value in values]
         rows.append((unequal.what, *map(shown, values)))
     ray = first.either
-    title = f"first difference: the {ray['kind']} ray at depth {ray['depth']} of weight {ray['weight']:.3g}"
+    title = f"first difference: the {ray.kind} ray at depth {ray.depth} of weight {ray.weight:.3g}"
     print_table(rows, ("", *names), title=title)
 
 

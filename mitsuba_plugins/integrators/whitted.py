@@ -259,13 +259,11 @@ class Whitted(mi.SamplingIntegrator):
         while active:
             hit = self.closest(ray, active)
             finish, color = self.material(ray, hit)
-            local = self._local_radiance(ray, hit, finish, color)
+            local = self.local_radiance(ray, hit, finish, color)
             radiance += weight * dr.select(hit.valid, local, self.types.Color3(self.background))
 
             depth += 1
-            follows = hit.valid & (depth <= self.max_depth)
-            mirror_weight, mirrors = self._successor_weight(self.reflection, weight * finish.kr, follows)
-            through_weight, refracts = self._successor_weight(self.refraction, weight * finish.kt, follows)
+            mirror_weight, mirrors, through_weight, refracts = self.followed(weight, depth, hit, finish)
             active = mirrors | refracts
             weight = dr.select(mirrors, mirror_weight, through_weight)
             if dr.hint(self.branching, mode="scalar"):
@@ -289,6 +287,16 @@ class Whitted(mi.SamplingIntegrator):
                 ray = self.transmitted(ray, hit, finish.eta)[0]
         return radiance
 
+    def followed(self, weight, depth, hit: Hit, finish: Finish):
+        """Weight of the mirrored ray of a hit, and where it is followed; the same of the refracted one.
+
+        `weight` is that of the ray that has hit, and `depth` how many bounces lie before those that follow.
+        """
+        follows = hit.valid & (depth <= self.max_depth)
+        mirror_weight, mirrors = self._successor_weight(self.reflection, weight * finish.kr, follows)
+        through_weight, refracts = self._successor_weight(self.refraction, weight * finish.kt, follows)
+        return mirror_weight, mirrors, through_weight, refracts
+
     def _successor_weight(self, enabled, weight, active):
         """Weight of a mirrored or refracted ray, and where it is followed."""
         if not enabled:
@@ -296,7 +304,8 @@ class Whitted(mi.SamplingIntegrator):
         return weight, active & (weight > 0) & (weight >= self.cutoff)
 
     @dr.syntax
-    def _local_radiance(self, ray: Ray, hit: Hit, finish: Finish, color):
+    def local_radiance(self, ray: Ray, hit: Hit, finish: Finish, color):
+        """What a surface sends back along a ray by itself (Color3): ambient light, and what the lights add."""
         radiance = finish.ka * self.types.Color3(self.ambient) * color
         if dr.hint(self.shadows, mode="scalar"):
             lit = hit.valid & (finish.kd + finish.ks > 0)
