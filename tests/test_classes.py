@@ -172,7 +172,7 @@ def test_another_colour_is_not_explained():
 
 def test_rays_that_are_not_followed():
     scene, picture = reference(SCENES[[file.stem for file in SCENES].index("figure1")])
-    explanation = explained(scene, picture, METHODS["native-depth-1"], most=30)
+    explanation = explained(scene, picture, METHODS["native:max_depth=1"], most=30)
     assert explanation.counts() == {"ray not followed": 30}
 
 

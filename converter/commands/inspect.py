@@ -155,7 +155,7 @@ def _cutoff(found: dict[str, Any]) -> str:
     if bound == 0:
         return f"{share}: drops no ray"
     if 255 * bound > MOST_LEVELS:
-        return f"{share}: the bound is loose here; whitted compare --reference native-cutoff-0 measures"
+        return f"{share}: the bound is loose here; whitted compare --reference native:cutoff=0 measures"
     return f"{share}: no channel is off by more than {_rounded_up(bound)} ({_rounded_up(255 * bound)} of 255 levels)"
 
 

@@ -9,12 +9,10 @@ from typing import NoReturn
 
 from converter.commands.exits import UsageError
 from converter.scene.model import Color
-from converter.scene.settings import Settings
+from converter.scene.settings import DEEPEST, MOST_THREADS, Settings
 
 MAX_SIZE = 65535
 MAX_SAMPLES = 65536
-MAX_DEPTH = 1000
-MAX_THREADS = 1024
 DEFAULTS = Settings()
 
 
@@ -109,7 +107,7 @@ def _samples(text: str) -> int:
 
 
 def _depth(text: str) -> int:
-    return whole(text, 0, MAX_DEPTH)
+    return whole(text, 0, DEEPEST)
 
 
 def _seed(text: str) -> int:
@@ -117,7 +115,7 @@ def _seed(text: str) -> int:
 
 
 def _threads(text: str) -> int:
-    return whole(text, 0, MAX_THREADS)
+    return whole(text, 0, MOST_THREADS)
 
 
 def size(text: str) -> tuple[int, int]:

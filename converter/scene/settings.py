@@ -9,6 +9,10 @@ PixelSample = Literal["corner", "center"]
 Specular = Literal["phong", "blinn"]
 IorReading = Literal["auto", "ratio", "index"]
 
+DEEPEST = 1000
+"""The largest `max_depth`."""
+MOST_THREADS = 1024
+
 
 @dataclass(frozen=True, slots=True)
 class Settings:
