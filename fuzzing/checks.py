@@ -22,7 +22,7 @@ from converter.scene.needs import scene_needs
 from converter.scene.notices import scene_notices
 from converter.scene.parser import parse_scene
 from converter.scene.settings import Settings
-from converter.to_mitsuba.polyhedra import PolyhedronError
+from converter.to_mitsuba.meshes import PolyhedronError
 from converter.to_mitsuba.scene import scene_description
 from converter.to_povray.scene import povray_scene
 

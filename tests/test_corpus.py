@@ -33,7 +33,7 @@ from converter.scene.model import Sphere
 from converter.scene.parser import MOST_PROBLEMS, load_scene, parse_scene
 from converter.scene.settings import Settings
 from converter.to_mitsuba.export import export_scene
-from converter.to_mitsuba.polyhedra import PolyhedronError
+from converter.to_mitsuba.meshes import PolyhedronError
 from converter.to_povray.export import export_povray
 
 CORPUS = Path(__file__).parent / "corpus"

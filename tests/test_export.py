@@ -130,7 +130,7 @@ def test_a_full_disk_leaves_the_earlier_export(small_scene, textured, tmp_path, 
     def full(*_):
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr("converter.to_mitsuba.polyhedra.write_ply", full)
+    monkeypatch.setattr("converter.to_mitsuba.meshes.write_ply", full)
     for target in (folder, tmp_path / "new"):
         with pytest.raises(OSError, match="No space"):
             export_scene(small_scene, Settings(), target)

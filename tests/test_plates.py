@@ -24,7 +24,7 @@ from converter.scene.settings import Settings
 from converter.scene.writer import write_scene
 from converter.studies.families.scenes import GLASS, MATTE, MIRROR, WHITE, camera, light, scene, sphere
 from converter.to_mitsuba.bounds import Box
-from converter.to_mitsuba.polyhedra import polyhedron_mesh
+from converter.to_mitsuba.meshes import polyhedron_mesh
 from converter.to_povray.scene import povray_scene
 
 CASE = Path(__file__).parent / "corpus" / "drawn" / "plate.in"

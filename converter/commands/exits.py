@@ -22,7 +22,7 @@ _UNUSABLE = (
     ("converter.images.texture", "TextureError"),
     ("converter.compare.metrics", "SizeMismatch"),
     ("converter.errors", "ExportError"),
-    ("converter.to_mitsuba.polyhedra", "PolyhedronError"),
+    ("converter.to_mitsuba.meshes", "PolyhedronError"),
     ("converter.renderers.povray", "PovrayError"),
 )
 _UNAVAILABLE = (("converter.renderers.base", "RendererUnavailable"), ("mitsuba_plugins.backend", "BackendError"))

@@ -39,7 +39,7 @@ from converter.shapes.table import shape_kind
 
 if TYPE_CHECKING:
     from converter.renderers.methods import Method
-    from converter.to_mitsuba.polyhedra import PolyhedronMesh
+    from converter.to_mitsuba.meshes import PolyhedronMesh
 
 Class = Literal[
     "silhouette",

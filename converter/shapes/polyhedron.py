@@ -269,7 +269,7 @@ def geometry(shape: Polyhedron, facts: Facts) -> dict[str, Any]:
 
 def mitsuba_shape(shape: Polyhedron, meshing: "Meshing", name: str) -> tuple[dict[str, Any], dict[str, Any]]:
     """A `mesh` that holds a `PolyhedronMesh` of ours."""
-    from converter.to_mitsuba.polyhedra import polyhedron_mesh
+    from converter.to_mitsuba.meshes import polyhedron_mesh
 
     mesh = polyhedron_mesh(shape.planes, meshing.bounds, name)
     return {"type": "mesh", "mesh": mesh}, {"triangles": mesh.planes.tolist(), "deviation": mesh.deviation}

@@ -120,7 +120,7 @@ def _with_files(name: str, element: dict[str, Any], folder: Path) -> tuple[dict[
     """An element with what only memory can hold in a file."""
     rest = {key: value for key, value in element.items() if key not in ("mesh", "data", "geometry")}
     if "mesh" in element:
-        from converter.to_mitsuba.polyhedra import write_ply
+        from converter.to_mitsuba.meshes import write_ply
 
         path = folder / "meshes" / f"{name}.ply"
         write_ply(element["mesh"], path)
