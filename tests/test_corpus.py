@@ -339,7 +339,7 @@ import resource, sys
 from pathlib import Path
 import numpy, OpenImageIO
 from converter.renderers.native import NativeRenderer
-from converter.scene.cutoff import cutoff_bound
+from converter.analysis.cutoff import cutoff_bound
 from converter.scene.errors import SceneError
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings

@@ -11,10 +11,10 @@ from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 from strategies import scenes
 
+from converter.analysis.notices import ior_notices, scene_notices
 from converter.scene import geometry
 from converter.scene.model import Camera, Finish, Light, Object, Polyhedron, Scene, Solid, Sphere
 from converter.scene.needs import MAX_DEPTH, MAX_DEPTH_BRANCHING, eta, is_index, scene_needs
-from converter.scene.notices import ior_notices, scene_notices
 from converter.scene.parser import load_scene, parse_scene
 from converter.scene.settings import IorReading, Settings
 from converter.scene.writer import write_scene

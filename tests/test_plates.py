@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 from test_halfspaces import PLATE, moved
 
+from converter.analysis.coplanar import with_planes_shared
+from converter.analysis.cutoff import cutoff_bound
+from converter.analysis.regions.warnings import region_warnings
 from converter.compare.margins import crossings, edge_margin, silhouette_margin, surface_margin
-from converter.regions.warnings import region_warnings
 from converter.renderers.methods import METHODS
 from converter.renderers.native import NativeRenderer
-from converter.scene.coplanar import with_planes_shared
-from converter.scene.cutoff import cutoff_bound
 from converter.scene.model import Finish, Polyhedron, Scene, Solid
 from converter.scene.needs import scene_needs
 from converter.scene.parser import load_scene, parse_scene

@@ -4,11 +4,11 @@ from collections import Counter
 from dataclasses import asdict
 from typing import Any
 
+from converter.analysis.cutoff import cutoff_bound
+from converter.analysis.notices import ior_notices, scene_notices
 from converter.pigments.table import pigment_kind
-from converter.scene.cutoff import cutoff_bound
 from converter.scene.model import Finish, Pigment, Scene
 from converter.scene.needs import SceneNeeds, is_index, scene_needs
-from converter.scene.notices import ior_notices, scene_notices
 from converter.scene.settings import Settings
 from converter.shapes.table import shape_kind
 
@@ -55,7 +55,7 @@ def inspect_scene(scene: Scene, settings: Settings) -> dict[str, Any]:
 
 def _warnings(scene: Scene, settings: Settings) -> dict[str, tuple[str, ...]]:
     """Where methods are known to fail with the scene, by their names; a method for each arithmetic."""
-    from converter.regions.warnings import region_warnings
+    from converter.analysis.regions.warnings import region_warnings
     from converter.renderers.methods import METHODS, Method
 
     methods: dict[str | None, Method] = {}

@@ -7,10 +7,10 @@ from dataclasses import dataclass
 from types import ModuleType
 from typing import Any, Literal
 
+from converter.analysis.coplanar import with_planes_shared
 from converter.pigments.table import pigment_kind
 from converter.renderers.base import Interrupted, Progress, RendererUnavailable, Rendering
 from converter.renderers.records import PixelRecord, RayRecord, pixel_record
-from converter.scene.coplanar import with_planes_shared
 from converter.scene.model import Scene
 from converter.scene.needs import SceneNeeds, scene_needs
 from converter.scene.settings import Settings

@@ -2,8 +2,8 @@
 
 from typing import Any
 
+from converter.analysis.coplanar import with_planes_shared
 from converter.pigments.table import pigment_kind
-from converter.scene.coplanar import with_planes_shared
 from converter.scene.model import Scene
 from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings

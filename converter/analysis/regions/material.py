@@ -5,9 +5,9 @@ from collections.abc import Iterator
 
 import numpy as np
 
+from converter.analysis.regions.region import Finding, Region, worst
+from converter.analysis.regions.situation import Floats, Situation
 from converter.pigments.table import pigment_kind
-from converter.regions.region import Finding, Region, worst
-from converter.regions.situation import Floats, Situation
 from converter.shapes.table import shape_kind
 
 SEEN = 0.25

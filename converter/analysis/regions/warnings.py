@@ -5,10 +5,10 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from converter.analysis.regions import bodies, contacts, light, material, view
+from converter.analysis.regions.region import Finding
+from converter.analysis.regions.situation import Situation, situation_of
 from converter.pigments.table import pigment_kind
-from converter.regions import bodies, contacts, light, material, view
-from converter.regions.region import Finding
-from converter.regions.situation import Situation, situation_of
 from converter.scene.errors import place
 from converter.scene.model import Scene
 from converter.scene.settings import Settings

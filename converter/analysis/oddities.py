@@ -8,8 +8,8 @@ import math
 from collections.abc import Iterator
 from typing import NamedTuple
 
+from converter.analysis.attenuation import least_divisor
 from converter.pigments.table import pigment_kind
-from converter.scene.attenuation import least_divisor
 from converter.scene.errors import place, so_are
 from converter.scene.model import Color, Plane, Scene, Vector
 from converter.scene.needs import SceneNeeds, scene_needs

@@ -39,8 +39,8 @@ from typing import NamedTuple
 import numpy as np
 from numpy.typing import NDArray
 
+from converter.analysis.attenuation import least_divisor
 from converter.pigments.table import pigment_kind
-from converter.scene.attenuation import least_divisor
 from converter.scene.model import Color, Scene
 from converter.scene.needs import SceneNeeds, depth_limit, scene_needs
 from converter.scene.settings import Settings

@@ -5,8 +5,8 @@ from itertools import combinations
 
 import numpy as np
 
-from converter.regions.region import Finding, Region
-from converter.regions.situation import Floats, Situation
+from converter.analysis.regions.region import Finding, Region
+from converter.analysis.regions.situation import Floats, Situation
 from converter.renderers.methods import Arithmetic
 
 NEIGHBORS = 8

@@ -1,10 +1,10 @@
 """What a scene's reader should be told although nothing is wrong."""
 
-from converter.scene.enclosure import enclosure_notices
+from converter.analysis.enclosure import enclosure_notices
+from converter.analysis.oddities import oddity_notices
 from converter.scene.errors import place, so_are
 from converter.scene.model import Scene
 from converter.scene.needs import is_index, scene_needs
-from converter.scene.oddities import oddity_notices
 from converter.scene.settings import Settings
 from converter.shapes.table import shape_kind
 

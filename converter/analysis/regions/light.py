@@ -4,8 +4,8 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from converter.regions.region import Finding, Region
-from converter.regions.situation import Floats, Situation
+from converter.analysis.regions.region import Finding, Region
+from converter.analysis.regions.situation import Floats, Situation
 from converter.shapes.table import shape_kind
 from native_tracer.incidence import surfaces_at
 

@@ -5,7 +5,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from converter.regions.situation import Floats, Situation
+from converter.analysis.regions.situation import Floats, Situation
 from converter.renderers.methods import Arithmetic
 from converter.scene.errors import so_are
 
