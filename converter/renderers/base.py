@@ -4,12 +4,13 @@ from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol, TypeGuard
 
-from converter.renderers.records import PixelRecord
 from converter.scene.model import Scene
 from converter.scene.settings import Settings
 
 if TYPE_CHECKING:
     from collections.abc import Buffer  # type: ignore[attr-defined]  # Python 3.12; a memoryview or a NumPy array here
+
+    from converter.renderers.records import PixelRecord
 
 Progress = Callable[[float], None]
 """Called now and then, from the calling thread, with the finished share of the picture (0..1)."""
@@ -62,7 +63,7 @@ class Renderer(Protocol):
 class RayTeller(Renderer, Protocol):
     """A renderer that tells its rays."""
 
-    def trace_pixel(self, scene: Scene, settings: Settings, x: int, y: int) -> PixelRecord:
+    def trace_pixel(self, scene: Scene, settings: Settings, x: int, y: int) -> "PixelRecord":
         """Trace one pixel, column `x` and row `y` from the top left corner.
 
         Raises:
@@ -73,7 +74,7 @@ class RayTeller(Renderer, Protocol):
         """
         ...
 
-    def trace_pixels(self, scene: Scene, settings: Settings, pixels: Sequence[tuple[int, int]]) -> list[PixelRecord]:
+    def trace_pixels(self, scene: Scene, settings: Settings, pixels: Sequence[tuple[int, int]]) -> "list[PixelRecord]":
         """Trace pixels (column, row); a record for each."""
         ...
 

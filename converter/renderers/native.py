@@ -5,16 +5,18 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from types import ModuleType
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
 from converter.analysis.coplanar import with_planes_shared
 from converter.pigments.table import pigment_kind
 from converter.renderers.base import Interrupted, Progress, RendererUnavailable, Rendering
-from converter.renderers.records import PixelRecord, RayRecord, pixel_record
 from converter.scene.model import Scene
 from converter.scene.needs import SceneNeeds, scene_needs
 from converter.scene.settings import Settings
 from converter.shapes.table import shape_kind
+
+if TYPE_CHECKING:
+    from converter.renderers.records import PixelRecord, RayRecord
 
 Precision = Literal["float", "double", "long double"]
 Search = Literal["auto", "brute", "bvh"]
@@ -63,12 +65,14 @@ class NativeRenderer:
             raise Interrupted(rendering()) from None
         return rendering()
 
-    def trace_pixel(self, scene: Scene, settings: Settings, x: int, y: int) -> PixelRecord:
+    def trace_pixel(self, scene: Scene, settings: Settings, x: int, y: int) -> "PixelRecord":
         """Trace one pixel, as `RayTeller` has it; its colour is what `render` leaves there."""
         return self.trace_pixels(scene, settings, [(x, y)])[0]
 
-    def trace_pixels(self, scene: Scene, settings: Settings, pixels: Sequence[tuple[int, int]]) -> list[PixelRecord]:
+    def trace_pixels(self, scene: Scene, settings: Settings, pixels: Sequence[tuple[int, int]]) -> "list[PixelRecord]":
         """Trace pixels, as `RayTeller` has it."""
+        from converter.renderers.records import pixel_record  # late: a picture needs none
+
         needs = scene_needs(scene, settings)
         native_scene = build_scene(scene, needs)
         options = self._options(settings, needs)
@@ -131,7 +135,7 @@ def build_scene(scene: Scene, needs: SceneNeeds) -> Any:
     return native
 
 
-def _restore_planes(rays: list[RayRecord], needs: SceneNeeds) -> None:
+def _restore_planes(rays: "list[RayRecord]", needs: SceneNeeds) -> None:
     """Turn the tracer's plane numbers, which skip the planes that have no face, into the scene's."""
     pending = list(rays)
     while pending:

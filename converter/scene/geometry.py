@@ -24,11 +24,9 @@ def scene_facts(scene: Scene) -> tuple[Facts, ...]:
 
 
 def _looked_into(shapes: Sequence[Shape]) -> tuple[Facts, ...]:
-    found: dict[int, Facts] = {}
-    for kind, module in SHAPE_KINDS.items():
-        if own := [i for i, shape in enumerate(shapes) if type(shape) is kind]:
-            found |= zip(own, module.facts([shapes[i] for i in own]), strict=True)
-    return tuple(found[i] for i in range(len(shapes)))
+    kinds = set(map(type, shapes))
+    found = {kind: iter(SHAPE_KINDS[kind].facts([s for s in shapes if type(s) is kind])) for kind in kinds}
+    return tuple([next(found[type(shape)]) for shape in shapes])
 
 
 def _forget(scene: ReferenceType[Scene]) -> None:

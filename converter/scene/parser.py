@@ -62,7 +62,8 @@ def load_scene(path: str | Path) -> Scene:
     scene = _find_textures(scene, reader)
     problems: list[Problem] = []
     if scene:
-        problems = check_geometry(scene)
+        with _uncollected():
+            problems = check_geometry(scene)
     return _checked(scene, reader, problems)
 
 
