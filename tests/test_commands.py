@@ -278,7 +278,7 @@ def test_pixels_that_are_no_numbers_are_told(whitted, scene, tmp_path):
     scene.write_text(SCENE.replace("5 5 -9 .8 .8 .8 1 0 0", "5 5 -9 .8 .8 0 5e-324 0 0"))
     status, _, err = whitted("render", scene, tmp_path / "a.ppm", 8, 6, "--method", "native")
     assert status == 0
-    assert re.search(r"a\.ppm: \d+ of 48 pixels are no numbers \(NaN\): the colours there exceed all numbers", err)
+    assert re.search(r"a\.ppm: \d+ of 48 pixels are NaN: the colours there exceed all numbers", err)
     assert "NaN" not in whitted("render", scene, tmp_path / "a.ppm", 8, 6, "--method", "native", "--quiet")[2]
 
 
@@ -753,7 +753,7 @@ def test_pixel_marks_and_tells_the_first_difference(whitted, scene, monkeypatch)
     marked = [line for line in out.splitlines() if line.startswith(">")]
     assert marked[0].startswith(">n primary")
     assert any(line.startswith(">m primary") for line in marked)
-    assert "first difference: the primary ray at depth 0 of weight 1\n" in out
+    assert "first difference: the primary ray at depth 0 of throughput 1\n" in out
     assert out.splitlines()[-1].startswith("t ")
 
 

@@ -233,7 +233,7 @@ def test_float_noise_is_no_difference(tree):
 @pytest.mark.parametrize(
     ("change", "what"),
     [
-        (lambda ray: setattr(ray, "weight", 0.5), "weight"),
+        (lambda ray: setattr(ray, "throughput", 0.5), "throughput"),
         (lambda ray: setattr(ray, "direction", [0, 0, 1]), "direction"),
         (lambda ray: setattr(ray, "hit", None), "object hit"),
         (lambda ray: setattr(ray.hit, "object", 1), "object hit"),
@@ -280,7 +280,7 @@ def test_a_ray_that_only_one_traced(tree):
 def test_listing(tree):
     scene, rays = tree
     lines = [line.text for line in list_rays(pair_trees(rays, rays), scene, ("n", "m"), None)]
-    assert lines[0].split()[:3] == ["ray", "weight", "hit"]
+    assert lines[0].split()[:3] == ["ray", "throughput", "hit"]
     assert "#0 sphere (12)" in lines[1]
     assert any("light 1 adds" in line for line in lines)
     assert any("light 2 behind" in line for line in lines)

@@ -14,7 +14,7 @@ from test_halfspaces import PLATE, moved
 from converter.analysis.coplanar import with_planes_shared
 from converter.analysis.cutoff import cutoff_bound
 from converter.analysis.regions.warnings import region_warnings
-from converter.compare.margins import crossings, edge_margin, silhouette_margin, surface_margin
+from converter.compare.margins import edge_margin, intersections, silhouette_margin, surface_margin
 from converter.renderers.methods import METHODS
 from converter.renderers.native import NativeRenderer
 from converter.scene.model import Finish, Polyhedron, Scene, Solid
@@ -146,7 +146,7 @@ def test_what_differs_on_a_plate_is_not_explained_by_its_other_side(direction):
     assert silhouette_margin(shape, -5 * d, d) > 0.4
     assert edge_margin(shape, -5 * d, d) > 0.4
     assert surface_margin(shape, np.zeros(3), on_it=True) == 1
-    assert tuple(crossings(shape, -5 * d, d)[0]) == pytest.approx((5, d[1] if d[1] < 0 else 1))
+    assert tuple(intersections(shape, -5 * d, d)[0]) == pytest.approx((5, d[1] if d[1] < 0 else 1))
 
 
 def test_a_plate_for_povray():

@@ -75,4 +75,4 @@ def _warn_of_nan(rendering: Rendering, out: Path, quiet: bool) -> None:
 
     if count := count_nan_pixels(rendering.pixels):
         share = f"{count} of {rendering.width * rendering.height} pixels"
-        say(f"warning: {out}: {share} are no numbers (NaN): the colours there exceed all numbers", quiet)
+        say(f"warning: {out}: {share} are NaN: the colours there exceed all numbers", quiet)

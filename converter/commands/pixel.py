@@ -115,7 +115,7 @@ def _print_difference(first: "Pair | None", scene: "Scene", names: list[str]) ->
             values = ["nothing" if value is None else object_name(scene, value) for value in values]
         rows.append((unequal.what, *map(shown, values)))
     ray = first.either
-    title = f"first difference: the {ray.kind} ray at depth {ray.depth} of weight {ray.weight:.3g}"
+    title = f"first difference: the {ray.kind} ray at depth {ray.depth} of throughput {ray.throughput:.3g}"
     print_table(rows, ("", *names), title=title)
 
 

@@ -22,8 +22,8 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
 import numpy as np
 
 from converter.compare.margins import (
-    crossings,
     edge_margin,
+    intersections,
     silhouette_margin,
     surface_margin,
     tie_margin,
@@ -251,8 +251,8 @@ class _Explainer:
         ray, other = pair.reference, pair.test
         if ray is None or other is None:
             one = pair.either
-            amount = one.weight * max(map(abs, one.radiance))
-            short = abs(one.weight - self._cutoff) if self._same_limits else 0.0
+            amount = one.throughput * max(map(abs, one.radiance))
+            short = abs(one.throughput - self._cutoff) if self._same_limits else 0.0
             yield _Cause("ray not followed", "a ray is traced", one, amount, _Margin(short, 0.0, self._rounding))
             return
         hits = [hit for hit in (ray.hit, other.hit) if hit is not None]
@@ -266,7 +266,7 @@ class _Explainer:
         own = self._own(ray.origin, hits, start)
         if len(hits) == 1 or _side(hits[0]) != _side(hits[1]):
             near = min(self._hit_margins(ray, hits, start, inherited, own), key=_share)
-            yield _Cause("silhouette", "object hit", ray, ray.weight * _largest(ray.radiance, other.radiance), near)
+            yield _Cause("silhouette", "object hit", ray, ray.throughput * _largest(ray.radiance, other.radiance), near)
             return
         hit = hits[0]
         spread = self._spread(ray, hit)
@@ -276,18 +276,20 @@ class _Explainer:
             pigment = self._scene.pigments[self._scene.objects[hit.object].pigment]
             margin = pigment_kind(pigment).edge_margin(pigment, np.array(hit.point))
             near = _Margin(margin, inherited, own)
-            yield _Cause("checker or texel edge", "pigment", ray, ray.weight * _largest(ray.local, other.local), near)
+            yield _Cause(
+                "checker or texel edge", "pigment", ray, ray.throughput * _largest(ray.local, other.local), near
+            )
         yield from self._light_causes(ray, hits, inherited, own)
         if all(one.lit == two.lit for one, two in zip(hit.lights, hits[1].lights, strict=True)):
             # Nothing but a highlight, or light that falls off, at another place.
             lights = zip(hit.lights, hits[1].lights, strict=True)
             amount = sum(_largest(*pair) for one, two in lights for pair in _terms(one, two))
-            if ray.weight * amount > LIMIT / 4:
+            if ray.throughput * amount > LIMIT / 4:
                 near = _Margin(math.dist(hit.point, hits[1].point), spread(reach), own)
-                yield _Cause("deep reflection", "light", ray, ray.weight * amount, near)
+                yield _Cause("deep reflection", "light", ray, ray.throughput * amount, near)
         if hit.total_reflection != hits[1].total_reflection:
             near = self._critical_margin(ray, hit, error.direction, inherited, own)
-            amount = ray.weight * _largest(ray.radiance, other.radiance)
+            amount = ray.throughput * _largest(ray.radiance, other.radiance)
             yield _Cause("critical angle", "total reflection", ray, amount, near)
             return
         for child in pair.children:
@@ -317,7 +319,7 @@ class _Explainer:
             )
         if len(hits) == 2 and hits[0].object != hits[1].object:
             a, b = (
-                min(crossings(self._shape(hit.object), o, d), key=lambda c, t=hit.t: abs(c.t - t))  # type: ignore[misc]
+                min(intersections(self._shape(hit.object), o, d), key=lambda c, t=hit.t: abs(c.t - t))  # type: ignore[misc]
                 for hit in hits
             )
             yield _Margin(tie_margin(a, b), inherited, own)
@@ -350,10 +352,10 @@ class _Explainer:
                 margins.append(_Margin(near, inherited, less + self._hidden * reach))
                 margins += [
                     _Margin(abs((c.t - distance) * c.cosine), inherited, less + self._hidden * reach)
-                    for c in crossings(shape, p, direction)
+                    for c in intersections(shape, p, direction)
                 ]
             amount = sum(_largest(*pair) for pair in _terms(one, other))
-            yield _Cause("shadow edge", "light seen", ray, ray.weight * amount, min(margins, key=_share))
+            yield _Cause("shadow edge", "light seen", ray, ray.throughput * amount, min(margins, key=_share))
 
     def _critical_margin(
         self, ray: RayRecord, hit: HitRecord, direction: float, inherited: float, own: float

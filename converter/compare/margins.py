@@ -9,15 +9,15 @@ import numpy as np
 from numpy.typing import NDArray
 
 from converter.scene.model import Shape
-from converter.shapes.kind import Crossing
+from converter.shapes.kind import Intersection
 from converter.shapes.table import shape_kind
 
 Floats = NDArray[np.float64]
 
 
-def crossings(shape: Shape, origin: Floats, direction: Floats) -> list[Crossing]:
+def intersections(shape: Shape, origin: Floats, direction: Floats) -> list[Intersection]:
     """Where a line enters and leaves a shape; of a ball that it misses, where it comes nearest."""
-    return shape_kind(shape).crossings(shape, origin, direction)
+    return shape_kind(shape).intersections(shape, origin, direction)
 
 
 def silhouette_margin(shape: Shape, origin: Floats, direction: Floats) -> float:
@@ -35,7 +35,7 @@ def surface_margin(shape: Shape, p: Floats, on_it: bool) -> float:
     return shape_kind(shape).surface_margin(shape, p, on_it)
 
 
-def tie_margin(a: Crossing, b: Crossing) -> float:
+def tie_margin(a: Intersection, b: Intersection) -> float:
     """From two surfaces that a ray crosses to where it crosses them in the other order."""
     if a.cosine == 0 or b.cosine == 0:
         return 0.0

@@ -14,7 +14,7 @@ WIDTH = 120
 """Columns that the text is made for."""
 DEEPEST_INDENT = 5
 """Depth up to which rays are indented; deeper ones have it behind their name."""
-HEADER = ("ray", "weight", "hit (line)", "t", "point", "normal", "side", "local colour")
+HEADER = ("ray", "throughput", "hit (line)", "t", "point", "normal", "side", "local colour")
 
 Side = Literal["both", "reference", "test"]
 
@@ -82,14 +82,14 @@ def _aligned(cells: Sequence[str], widths: Sequence[int]) -> str:
 def _row(ray: RayRecord, scene: Scene) -> tuple[str, ...]:
     depth = ray.depth
     kind = " " * min(depth, DEEPEST_INDENT) + ray.kind + (f" {depth}" if depth > DEEPEST_INDENT else "")
-    weight = f"{ray.weight:.3g}"
+    throughput = f"{ray.throughput:.3g}"
     local = _numbers(ray.local, ".3f")
     hit = ray.hit
     if hit is None:
-        return (kind, weight, "nothing", "", "", "", "", local)
+        return (kind, throughput, "nothing", "", "", "", "", local)
     return (
         kind,
-        weight,
+        throughput,
         object_name(scene, hit.object, hit.plane),
         f"{hit.t:.5g}",
         _point(hit.point),

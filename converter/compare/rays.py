@@ -74,7 +74,7 @@ def _ray_differences(reference: RayRecord, test: RayRecord) -> list[Unequal]:
     comparison = _Comparison()
     one, other = reference.hit, test.hit
     scale = max([*map(abs, reference.origin), *(hit.t for hit in (one, other) if hit)])
-    comparison.near("weight", reference.weight, test.weight)
+    comparison.near("throughput", reference.throughput, test.throughput)
     comparison.near("origin", reference.origin, test.origin, scale)
     comparison.near("direction", reference.direction, test.direction)
     if one is None or other is None:

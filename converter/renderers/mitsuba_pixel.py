@@ -124,12 +124,12 @@ class _Tracer:
         through, total = integrator.transmitted(ray, hit, finish.eta)
         mirrored = integrator.reflected(ray, hit)
         depth = level[0].depth + 1
-        weight = integrator.types.Float(np.array([record.weight for record in level]))
-        mirror_weight, mirrors, through_weight, refracts = integrator.followed(
-            weight, dr.opaque(mi.UInt32, depth, count), hit, finish
+        throughput = integrator.types.Float(np.array([record.throughput for record in level]))
+        mirror_throughput, mirrors, through_throughput, refracts = integrator.followed(
+            throughput, dr.opaque(mi.UInt32, depth, count), hit, finish
         )
         local = integrator.local_radiance(ray, hit, finish, pigment)
-        dr.eval(through, mirrored, total, local, mirror_weight, mirrors, through_weight, refracts)
+        dr.eval(through, mirrored, total, local, mirror_throughput, mirrors, through_throughput, refracts)
 
         local_colors, background = _rows(local, count), _rows(integrator.background, 1)[0]
         hits = self._hits(ray, hit, finish, pigment, total, count)
@@ -137,27 +137,27 @@ class _Tracer:
             record.hit = found
             record.local = background if found is None else color
         kinds: tuple[tuple[RayKind, Any, Any, Any, Ray], ...] = (
-            ("reflected", finish.kr, mirrors, mirror_weight, mirrored),
-            ("transmitted", finish.kt, refracts, through_weight, through),
+            ("reflected", finish.kr, mirrors, mirror_throughput, mirrored),
+            ("transmitted", finish.kt, refracts, through_throughput, through),
         )
         coefficients: list[dict[RayKind, float]] = [{} for _ in level]
         following: list[RayRecord] = []
         chosen = []
-        for kind, coefficient, follows, weights, successor in kinds:
-            successors = _Rays.of(successor, count)
+        for kind, coefficient, follows, throughputs, spawned in kinds:
+            secondary = _Rays.of(spawned, count)
             which = []
-            columns = (_list(numbers, count) for numbers in (coefficient, follows, weights))
-            for i, (factor, goes_on, its_weight) in enumerate(zip(*columns, strict=True)):
+            columns = (_list(numbers, count) for numbers in (coefficient, follows, throughputs))
+            for i, (factor, goes_on, its_throughput) in enumerate(zip(*columns, strict=True)):
                 if level[i].hit is None or factor == 0:
                     continue
                 if not goes_on:
                     level[i].dropped[kind] = "depth" if depth > self._max_depth else "cutoff"
                     continue
                 coefficients[i][kind] = factor
-                which.append((i, its_weight))
-            chosen.append(successors.chosen([i for i, _ in which]))
-            for (i, its_weight), o, d in zip(which, *chosen[-1].places(), strict=True):
-                following.append(RayRecord(kind, its_weight, depth, o, d))
+                which.append((i, its_throughput))
+            chosen.append(secondary.chosen([i for i, _ in which]))
+            for (i, its_throughput), o, d in zip(which, *chosen[-1].places(), strict=True):
+                following.append(RayRecord(kind, its_throughput, depth, o, d))
                 level[i].children.append(following[-1])
         return following, chosen[0].with_more(chosen[1]), coefficients
 

@@ -64,22 +64,22 @@ class HitRecord:
 
 @dataclass(slots=True)
 class RayRecord:
-    """A ray, with those that follow from it.
+    """A ray, with its secondary rays.
 
     Attributes:
         kind: what it is to the ray before it.
-        weight: product of the kr and kt that lead to it.
+        throughput: product of the kr and kt that lead to it.
         depth: bounces before it.
         origin, direction: three numbers each; the direction has length 1.
         hit: what it hits; None if it hits nothing.
-        local: its colour without its successors'; the background's where nothing is hit.
-        radiance: its colour with its successors', not multiplied by its own weight.
-        dropped: successors that were not traced, by their kinds, and why.
-        children: its successors.
+        local: its colour without that of secondary rays; the background's where nothing is hit.
+        radiance: its colour with theirs, not multiplied by its own throughput.
+        dropped: secondary rays that were not traced, by their kinds, and why.
+        children: its secondary rays.
     """
 
     kind: RayKind
-    weight: float
+    throughput: float
     depth: int
     origin: Triple
     direction: Triple
@@ -106,7 +106,8 @@ def pixel_record(told: Mapping[str, Any]) -> PixelRecord:
 
 
 def _ray_record(told: Mapping[str, Any]) -> RayRecord:
-    hit = told["hit"]
+    rest = dict(told)
+    throughput, hit, children = rest.pop("weight"), rest.pop("hit"), rest.pop("children")
     if hit is not None:
         hit = HitRecord(**hit | {"lights": [LightRecord(**light) for light in hit["lights"]]})
-    return RayRecord(**{**told, "hit": hit, "children": [_ray_record(child) for child in told["children"]]})
+    return RayRecord(throughput=throughput, hit=hit, children=list(map(_ray_record, children)), **rest)

@@ -8,7 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from converter.scene.model import Plane, Polyhedron, Vector
-from converter.shapes.kind import Crossing
+from converter.shapes.kind import Intersection
 from native_tracer.halfspaces import polyhedron_facts
 
 Floats = NDArray[np.float64]
@@ -21,21 +21,21 @@ def farthest_plane(planes: Sequence[Plane], point: Vector) -> float:
     return float(np.abs(rows @ [*point, 1] / np.linalg.norm(rows[:, :3], axis=1)).max(initial=0))
 
 
-def crossings(shape: Polyhedron, origin: Floats, direction: Floats) -> list[Crossing]:
+def intersections(shape: Polyhedron, origin: Floats, direction: Floats) -> list[Intersection]:
     """Where a line enters and leaves, as far as it does."""
     t, cosine, _ = _meet(shape, origin, direction)
     enters, leaves = np.where(cosine < 0, t, -np.inf), np.where(cosine > 0, t, np.inf)
     found = []
     for k in (int(enters.argmax()), int(leaves.argmin())):
         if np.isfinite(t[k]):
-            found.append(Crossing(float(t[k]), float(cosine[k])))
+            found.append(Intersection(float(t[k]), float(cosine[k])))
     return found
 
 
 def silhouette_margin(shape: Polyhedron, origin: Floats, direction: Floats) -> float:
     """From the line of a ray to where it begins, or ceases, to have a way through."""
-    t, cosine, height = _meet(shape, origin, direction)
-    beside = float(np.abs(height[cosine == 0]).min(initial=math.inf))
+    t, cosine, distance = _meet(shape, origin, direction)
+    beside = float(np.abs(distance[cosine == 0]).min(initial=math.inf))
     enters, leaves = cosine < 0, cosine > 0
     if not enters.any() or not leaves.any():
         return beside
@@ -60,18 +60,18 @@ def edge_margin(shape: Polyhedron, origin: Floats, direction: Floats) -> float:
 
 def surface_margin(shape: Polyhedron, p: Floats, on_it: bool) -> float:
     """From a point to the surface; if it lies on that, to the next face."""
-    _, _, height = _meet(shape, p, np.zeros(3))
+    _, _, distance = _meet(shape, p, np.zeros(3))
     if on_it:
-        return float(np.sort(np.abs(height))[1]) if len(height) > 1 else math.inf
-    return abs(float(height.max()))
+        return float(np.sort(np.abs(distance))[1]) if len(distance) > 1 else math.inf
+    return abs(float(distance.max()))
 
 
 def _meet(shape: Polyhedron, origin: Floats, direction: Floats) -> tuple[Floats, Floats, Floats]:
-    """For each plane where a line crosses it (infinite or NaN: nowhere), the cosine, and the origin's height above."""
+    """For each plane where a line meets it (infinite or NaN: nowhere), the cosine, and the origin's signed distance."""
     planes = _unit_planes(shape)
-    cosine, height = planes[:, :3] @ direction, planes[:, :3] @ origin + planes[:, 3]
+    cosine, distance = planes[:, :3] @ direction, planes[:, :3] @ origin + planes[:, 3]
     with np.errstate(divide="ignore", invalid="ignore"):
-        return -height / cosine, cosine, height
+        return -distance / cosine, cosine, distance
 
 
 @lru_cache(maxsize=64)

@@ -46,7 +46,7 @@ class Distances(NamedTuple):
     largest: float
 
 
-class Crossing(NamedTuple):
+class Intersection(NamedTuple):
     """Where a line crosses a surface: the distance, and the cosine between its direction and the normal there."""
 
     t: float
@@ -162,7 +162,7 @@ class ShapeKind(Protocol[S]):
 
     # ---- How near a ray is to meeting something else, see `compare.margins`; points and directions are (3,)
 
-    def crossings(self, shape: S, origin: "Floats", direction: "Floats") -> list[Crossing]:
+    def intersections(self, shape: S, origin: "Floats", direction: "Floats") -> list[Intersection]:
         """Where a line enters and leaves it; where it misses it, perhaps where it comes nearest."""
         ...
 

@@ -9,7 +9,7 @@ from converter.scene.fields import Lost, Numbers
 from converter.scene.model import Plane, Polyhedron, Vector
 from converter.scene.numerals import numerals
 from converter.scene.tokens import whole
-from converter.shapes.kind import Crossing, Distances, Facts, Horizon
+from converter.shapes.kind import Distances, Facts, Horizon, Intersection
 from converter.to_povray.text import number, vector
 
 if TYPE_CHECKING:
@@ -184,8 +184,8 @@ def lies_on(shape: Polyhedron, point: Vector) -> bool:
     return bool(surfaces_at(point, list(shape.planes), [False] * len(shape.planes)))
 
 
-def heights(shape: Polyhedron, point: Vector, which: Sequence[int] | None = None) -> list[float]:
-    """Of a point above each plane, or above some, by their indices."""
+def signed_distances(shape: Polyhedron, point: Vector, which: Sequence[int] | None = None) -> list[float]:
+    """Of a point from each plane, or from some, by their indices; negative inside."""
     x, y, z = point
     planes = shape.planes if which is None else [shape.planes[k] for k in which]
     return [(a * x + b * y + c * z + d) / math.hypot(a, b, c) for a, b, c, d in planes]
@@ -198,7 +198,9 @@ def distances(shape: Polyhedron, facts: Facts, point: Vector) -> Distances:
         corners = zip(point, facts.low, facts.high, strict=True)
         farthest = math.hypot(*(max(abs(x - p), abs(y - p)) for p, x, y in corners))
     numbers = (abs(shape.planes[k][3]) / math.hypot(*shape.planes[k][:3]) for k in facts.planes)
-    return Distances(abs(max(heights(shape, point, facts.planes))), farthest, max([*map(abs, point), *numbers]))
+    return Distances(
+        abs(max(signed_distances(shape, point, facts.planes))), farthest, max([*map(abs, point), *numbers])
+    )
 
 
 def reaches(shape: Polyhedron, half_spaces: Sequence[Plane]) -> bool:
@@ -220,11 +222,11 @@ def horizon(shape: Polyhedron, facts: Facts, eye: Vector) -> Horizon:
 # ---- Margins ---------------------------------------------------------------------------------------------------------
 
 
-def crossings(shape: Polyhedron, origin: "Floats", direction: "Floats") -> list[Crossing]:
+def intersections(shape: Polyhedron, origin: "Floats", direction: "Floats") -> list[Intersection]:
     """Where a line enters the last half-space that it enters, and leaves the first."""
     from converter.shapes import half_space_arrays
 
-    return half_space_arrays.crossings(shape, origin, direction)
+    return half_space_arrays.intersections(shape, origin, direction)
 
 
 def silhouette_margin(shape: Polyhedron, origin: "Floats", direction: "Floats") -> float:
@@ -242,7 +244,7 @@ def edge_margin(shape: Polyhedron, origin: "Floats", direction: "Floats") -> flo
 
 
 def surface_margin(shape: Polyhedron, p: "Floats", on_it: bool) -> float:
-    """By the heights above the planes."""
+    """By the signed distances from the planes."""
     from converter.shapes import half_space_arrays
 
     return half_space_arrays.surface_margin(shape, p, on_it)

@@ -8,7 +8,7 @@ from converter.scene.errors import shown
 from converter.scene.fields import Numbers
 from converter.scene.model import Plane, Sphere, Vector
 from converter.scene.numerals import numerals
-from converter.shapes.kind import Crossing, Distances, Facts, Horizon
+from converter.shapes.kind import Distances, Facts, Horizon, Intersection
 from converter.to_povray.text import number, vector
 
 if TYPE_CHECKING:
@@ -128,11 +128,11 @@ def horizon(shape: Sphere, facts: Facts, eye: Vector) -> Horizon:
 # ---- Margins ---------------------------------------------------------------------------------------------------------
 
 
-def crossings(shape: Sphere, origin: "Floats", direction: "Floats") -> list[Crossing]:
+def intersections(shape: Sphere, origin: "Floats", direction: "Floats") -> list[Intersection]:
     """Where a line enters and leaves; where it misses the ball, where it comes nearest, twice."""
     along, across = _nearest(shape, origin, direction)
     half = math.sqrt(max(shape.radius**2 - across**2, 0.0))
-    return [Crossing(along - half, -half / shape.radius), Crossing(along + half, half / shape.radius)]
+    return [Intersection(along - half, -half / shape.radius), Intersection(along + half, half / shape.radius)]
 
 
 def silhouette_margin(shape: Sphere, origin: "Floats", direction: "Floats") -> float:

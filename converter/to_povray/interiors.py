@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING, NamedTuple
 
 from converter.scene.model import Polyhedron, Scene, Shape, Sphere
 from converter.scene.needs import SceneNeeds
-from converter.shapes.polyhedron import heights
+from converter.shapes.polyhedron import signed_distances
 from converter.shapes.table import shape_kind
 
 if TYPE_CHECKING:
@@ -108,7 +108,7 @@ def _apart(first: Shape, second: Shape) -> bool:
         case Sphere(), Sphere():
             return math.dist(first.center, second.center) >= first.radius + second.radius
         case Sphere(), Polyhedron():
-            return max(heights(second, first.center)) >= first.radius
+            return max(signed_distances(second, first.center)) >= first.radius
         case Polyhedron(), Sphere():
             return _apart(second, first)
         case Polyhedron(), Polyhedron():
@@ -122,7 +122,7 @@ def _inside(inner: Shape, outer: Shape) -> bool:
         case Sphere(), Sphere():
             return math.dist(inner.center, outer.center) + inner.radius <= outer.radius
         case Sphere(), Polyhedron():
-            return max(heights(outer, inner.center)) <= -inner.radius
+            return max(signed_distances(outer, inner.center)) <= -inner.radius
         case Polyhedron(), Sphere():
             from native_tracer.halfspaces import polyhedron_faces
 

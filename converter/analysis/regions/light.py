@@ -19,12 +19,14 @@ def _near_planes(s: Situation, limit: float) -> Iterator[Finding]:
     planes = s.planes
     for k, source in enumerate(s.scene.lights if s.needs.lit else ()):
         place = np.array(source.position)
-        heights = planes.heights(place)
+        distances = planes.signed_distances(place)
         numbers = np.maximum(np.abs(planes.offset), float(np.abs(place).max()))
-        near = [i for i in np.flatnonzero((heights > 0) & (heights < limit * numbers)) if _over_face(s, place, int(i))]
+        near = [
+            i for i in np.flatnonzero((distances > 0) & (distances < limit * numbers)) if _over_face(s, place, int(i))
+        ]
         if near:
-            i = min(near, key=lambda i: heights[i] / numbers[i])
-            text = f"is {heights[i] / numbers[i]:.2g} of its coordinates above plane {planes.plane[i]}"
+            i = min(near, key=lambda i: distances[i] / numbers[i])
+            text = f"is {distances[i] / numbers[i]:.2g} of its coordinates above plane {planes.plane[i]}"
             yield _light(s, k, f"{text} of object {planes.object[i]} (less than {limit:.2g})")
             return
 
@@ -33,9 +35,9 @@ def _over_face(s: Situation, place: Floats, i: int) -> bool:
     """Whether a point is over a face, and not on it; the face's finish answers to light."""
     index = int(s.planes.object[i])
     own = s.planes_of(index)
-    foot = place - s.planes.heights(place)[i] * s.planes.normal[i]
+    foot = place - s.planes.signed_distances(place)[i] * s.planes.normal[i]
     room = 1e-9 * (float(np.abs(place).max()) + np.abs(own.offset))
-    if s.finish(index).kd == s.finish(index).ks == 0 or not np.all(own.heights(foot) <= room):
+    if s.finish(index).kd == s.finish(index).ks == 0 or not np.all(own.signed_distances(foot) <= room):
         return False
     shape = s.scene.objects[index].shape
     return not surfaces_at(place, [shape_kind(shape).planes(shape)[s.planes.plane[i]]], [False])

@@ -36,8 +36,8 @@ class Planes:
     normal: Floats
     offset: Floats
 
-    def heights(self, point: Floats) -> Floats:
-        """(m,) heights of a point (3,) above them."""
+    def signed_distances(self, point: Floats) -> Floats:
+        """(m,) signed distances of a point (3,), positive outside."""
         return np.asarray(self.normal @ point + self.offset)
 
 

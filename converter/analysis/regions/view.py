@@ -43,7 +43,7 @@ def _pixel_shares(s: Situation, polyhedra_only: bool = False) -> Floats:
     coordinate[bodies.object] = np.abs(bodies.center).max(axis=1, initial=0.0)
     # What has no bounds is as far away as where the picture shows it. The eye's own planes are where it does not.
     rays = _corner_rays(s)
-    t = -s.planes.heights(s.eye) / (rays @ s.planes.normal.T) * np.linalg.norm(rays, axis=1)[:, None]
+    t = -s.planes.signed_distances(s.eye) / (rays @ s.planes.normal.T) * np.linalg.norm(rays, axis=1)[:, None]
     seen = np.where((t > _NOISE * s.reach) & np.isfinite(t), t, 0.0).max(axis=0, initial=0.0)
     endless = ~np.array(s.needs.bounded, dtype=np.bool_)
     distance[endless] = 0.0
@@ -115,8 +115,8 @@ def _nearness(s: Situation) -> Floats:
     """For each object how far the eye is from its surface, over the coordinates of both."""
     shares = np.full(len(s.scene.objects), np.inf)
     planes, balls = s.planes, np.flatnonzero(s.bodies.is_ball)
-    heights = np.abs(planes.heights(s.eye))
-    np.minimum.at(shares, planes.object, heights / np.maximum(np.abs(planes.offset), s.reach))
+    distances = np.abs(planes.signed_distances(s.eye))
+    np.minimum.at(shares, planes.object, distances / np.maximum(np.abs(planes.offset), s.reach))
     gaps = np.abs(np.linalg.norm(s.bodies.center[balls] - s.eye, axis=1) - s.bodies.radius[balls])
     own = np.abs(s.bodies.center[balls]).max(axis=1, initial=0.0) + s.bodies.radius[balls]
     shares[s.bodies.object[balls]] = gaps / np.maximum(own, s.reach)
