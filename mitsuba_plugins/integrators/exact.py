@@ -116,20 +116,31 @@ class ExactSurfaces:
     @dr.syntax
     def _settled(self, ray: Ray, t: Any, index: Any, record: Any, close: Any) -> tuple[Any, Any, Any]:
         if close:
-            t = dr.full(type(t), dr.inf, dr.width(close))
-            error = dr.zeros(type(t), dr.width(close))
-            index = dr.full(mi.UInt32, NOTHING, dr.width(close))
-            record = dr.zeros(mi.UInt32, dr.width(close))
-            tested = dr.zeros(mi.UInt32, dr.width(close))
+            width = dr.width(close)
+            blur = most_blur(t)
+            reach = largest(ray.o)
+            # The first object of those that tie with the nearest: also where one ties with two that do not tie with one
+            # another, the order in which they are visited does not matter.
+            nearest = dr.full(type(t), dr.inf, width)
+            error = dr.zeros(type(t), width)
+            tested = dr.zeros(mi.UInt32, width)
             while close & (tested < self.records.surface_count):
+                met, met_error, _ = self._meet(ray, tested, close)
+                met_error = dr.minimum(met_error, blur * (met + reach))
+                error = dr.select((met < nearest) | ((met == nearest) & (met_error > error)), met_error, error)
+                nearest = dr.minimum(met, nearest)
+                tested += 1
+            t = dr.full(type(t), dr.inf, width)
+            index = dr.full(mi.UInt32, NOTHING, width)
+            record = dr.zeros(mi.UInt32, width)
+            tested = dr.zeros(mi.UInt32, width)
+            while close & (tested < self.records.surface_count) & (index == NOTHING):
                 met, met_error, met_record = self._meet(ray, tested, close)
-                # Objects come in their order: of those at the same distance the first counts.
-                ties = (t < dr.inf) & (t - met <= error + met_error)
-                nearer = (met < t) & ~ties
-                t = dr.select(nearer, met, t)
-                error = dr.select(nearer, met_error, error)
-                index = dr.select(nearer, tested, index)
-                record = dr.select(nearer, met_record, record)
+                met_error = dr.minimum(met_error, blur * (met + reach))
+                ties = (met < dr.inf) & (met - nearest <= error + met_error)
+                t = dr.select(ties, met, t)
+                index = dr.select(ties, tested, index)
+                record = dr.select(ties, met_record, record)
                 tested += 1
         return t, index, record
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from mitsuba_plugins.arithmetic import quotient
 
-DECIDES_TIES = False
+DECIDES_TIES = True
 """Whether ties are decided by rule, as `decides_ties` of the native tracer's rounding.h says of that."""
 
 

@@ -25,7 +25,7 @@
 namespace whitted::WHITTED_ISA {
 
 // Whether ties are decided by rule. Not yet: with full bounds, families of the stability study hold for a decade less.
-inline constexpr bool decides_ties = false;
+inline constexpr bool decides_ties = true;
 
 // The numbers of a file are rounded to double before any precision sees them.
 template <typename Real>

@@ -167,12 +167,9 @@ Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const H
         surface.error = rounding_error(reach, hits.t);
         surface.lean = L(patch.curvature) * surface.error;
 
-        surface.pigment = color_at(*object.pigment, surface.point, [&] {
-            // A ray that is off meets the surface farther off the more it slants.
-            const L off = decides_ties ? rays.t_min + patch.error_at(rays.reach) + hits.t * rays.spread : zero;
-            const L along = min(off / abs(dot(surface.outward, rays.direction)), L(most_blur<Real>) * (reach + hits.t));
-            return coordinate_errors(surface.point, surface.outward, rays.direction, off, along);
-        });
+        const L off = decides_ties ? rays.t_min + patch.error_at(rays.reach) + hits.t * rays.spread : zero;
+        const L blur = L(most_blur<Real>) * (reach + hits.t);
+        surface.pigment = color_at(*object.pigment, {surface.point, surface.outward, rays.direction, off, blur});
         const Finish<Real>& finish = object.finish;
         surface.ka = finish.ka;
         surface.kd = finish.kd;
@@ -205,7 +202,7 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
     // Shadow rays start on the viewer's side of the surface, as the reflected ray does.
     Rays<Real> shadow_rays{surface.point, surface.normal, surface.error,         hits.object,
                            hits.patch,    hits.inside,    L(least_spread<Real>), reach_of(surface.error)};
-    const L point_error = L(8 * tie_epsilon<Real>) * max_norm(surface.point);
+    const L point_error = L(tie_epsilon<Real> > 0 ? Real(0.25) : Real(0)) * surface.error;
     for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
         const Light<Real>& light = scene_.lights[i];
         const Vector<L> path = Vector<L>(light.position) - surface.point;
