@@ -10,8 +10,8 @@ from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.integrators.columns import column
 from mitsuba_plugins.integrators.contacts import LightContacts
 from mitsuba_plugins.integrators.geometry import Surface
-from mitsuba_plugins.integrators.rays import NOTHING, Hit, Ray, Real, largest, origin_error, spawn
-from mitsuba_plugins.integrators.rounding import DECIDES_TIES, least_spread, most_blur, surface_error
+from mitsuba_plugins.integrators.rays import NOTHING, Hit, Ray, Real, largest, origin_error, shadow_spread, spawn
+from mitsuba_plugins.integrators.rounding import DECIDES_TIES, most_blur, surface_error
 
 
 class Records:
@@ -90,7 +90,7 @@ class ExactSurfaces:
 
     def blocker(self, hit: Hit, d: Any, distance: Any, light: Any, active: Any) -> Any:
         """Some object between `hit` and a light at `distance` in direction `d`, on the side it was seen from."""
-        ray = spawn(hit, d, hit.inside, dr.full(type(distance), least_spread(distance), dr.width(d)))
+        ray = spawn(hit, d, hit.inside, shadow_spread(hit, distance))
         found, close = self.find_blocker(ray, distance, light, active)
         return found if close is None else self._settled_blocker(ray, distance, light, found, active & close)
 

@@ -59,7 +59,8 @@ struct Checker {
         using L = Lanes<Real>;
         const Vector<L>& p = met.point;
         const L rounding = 2 * tie_epsilon<Real>;
-        Vector<L> cell{cell_of(p.x, rounding * abs(p.x)), cell_of(p.y, rounding * abs(p.y)), cell_of(p.z, rounding * abs(p.z))};
+        Vector<L> cell{cell_of(p.x, rounding * abs(p.x)), cell_of(p.y, rounding * abs(p.y)),
+                       cell_of(p.z, rounding * abs(p.z))};
         const Vector<Mask<Real>> may_be_off = met.free();
         const L error = met.largest_error();
         const auto near_next = [&](L coordinate, L number, Mask<Real> off) {

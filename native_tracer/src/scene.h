@@ -212,21 +212,21 @@ struct Scene {
         Lanes<Real> nearest = infinity;
         Lanes<Real> error = Real(0);
         Lanes<Real> limit = select(wanted, infinity, nowhere);
-        for_each_crossing<Ties::decided>(
-            rays, limit, close, any_sphere, [&](Indices<Real>, const Crossing<Real>& crossing) {
-                const Lanes<Real> its_error = distance_errors(rays, crossing);
-                const Mask<Real> same = (crossing.t <= nearest) & (its_error > error);
-                error = select((crossing.t < nearest) | same, its_error, error);
-                nearest = min(crossing.t, nearest);
-                limit = min(nearest, limit);
-                return true;
-            });
+        for_each_crossing<Ties::decided>(rays, limit, close, any_sphere,
+                                         [&](Indices<Real>, const Crossing<Real>& crossing) {
+                                             const Lanes<Real> its_error = distance_errors(rays, crossing);
+                                             const Mask<Real> same = (crossing.t <= nearest) & (its_error > error);
+                                             error = select((crossing.t < nearest) | same, its_error, error);
+                                             nearest = min(crossing.t, nearest);
+                                             limit = min(nearest, limit);
+                                             return true;
+                                         });
         Hits<Real> hits;
         limit = select(wanted, nearest + Lanes<Real>(most_blur<Real>) * (nearest + rays.reach), nowhere);
         for_each_crossing<Ties::decided>(
             rays, limit, close, any_sphere, [&](Indices<Real> object, const Crossing<Real>& crossing) {
-                const Mask<Real> ties = (crossing.t < infinity) &
-                                        (crossing.t - nearest <= error + distance_errors(rays, crossing));
+                const Mask<Real> ties =
+                    (crossing.t < infinity) & (crossing.t - nearest <= error + distance_errors(rays, crossing));
                 const Mask<Real> first = ties & ((hits.object < Indices<Real>(0)) | (object < hits.object));
                 hits.t = select(first, crossing.t, hits.t);
                 hits.object = select(first, object, hits.object);

@@ -202,12 +202,13 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
     // Shadow rays start on the viewer's side of the surface, as the reflected ray does.
     Rays<Real> shadow_rays{surface.point, surface.normal, surface.error,         hits.object,
                            hits.patch,    hits.inside,    L(least_spread<Real>), reach_of(surface.error)};
-    const L point_error = L(tie_epsilon<Real> > 0 ? Real(0.25) : Real(0)) * surface.error;
+    const L point_error = L(tie_epsilon<Real> / (4 * input_epsilon<Real>)) * surface.error;
     for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
         const Light<Real>& light = scene_.lights[i];
         const Vector<L> path = Vector<L>(light.position) - surface.point;
         const L distance = length(path);
-        const Vector<L> to_light = path * (one / distance);
+        const L nearness = one / distance;
+        const Vector<L> to_light = path * nearness;
         const L cosine = dot(surface.normal, to_light);
         // A surface is not lit along itself, nor by a light at the very point.
         const Mask<Real> faces =
@@ -217,6 +218,8 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
         if (any(faces)) {
             counts_->shadow += static_cast<std::uint64_t>(count(faces));
             shadow_rays.direction = to_light;
+            // It leads to the light from wherever the point really is.
+            shadow_rays.spread = min(L(least_spread<Real>) + surface.error * nearness, L(most_blur<Real>));
             blocker = scene_.blocker(shadow_rays, light, distance, faces);
         }
         const Mask<Real> lit = faces & (blocker < 0);
