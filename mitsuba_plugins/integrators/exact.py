@@ -11,7 +11,7 @@ from mitsuba_plugins.integrators.columns import column
 from mitsuba_plugins.integrators.contacts import LightContacts
 from mitsuba_plugins.integrators.geometry import Surface
 from mitsuba_plugins.integrators.rays import NOTHING, Hit, Ray, Real, largest, origin_error, shadow_spread, spawn
-from mitsuba_plugins.integrators.rounding import DECIDES_TIES, most_blur, surface_error
+from mitsuba_plugins.integrators.rounding import most_blur, surface_error
 
 
 class Records:
@@ -218,7 +218,7 @@ class ExactSurfaces:
 
 def _off(ray: Ray, sphere: Any, v: Any, w: Any, reach: Any) -> Any:
     """How far a ray's origin and a surface may be off from one another, where ties are decided."""
-    return (ray.t_min + surface_error(sphere, v, w, reach)) * float(DECIDES_TIES)
+    return ray.t_min + surface_error(sphere, v, w, reach)
 
 
 # ---- Sphere ----------------------------------------------------------------------------------------------------------

@@ -33,7 +33,6 @@ from mitsuba_plugins.integrators.rays import (
     unit,
 )
 from mitsuba_plugins.integrators.rounding import (
-    DECIDES_TIES,
     camera_errors,
     coordinate_errors,
     epsilon,
@@ -196,7 +195,7 @@ class Whitted(mi.SamplingIntegrator):
 
     def _errors(self, ray: Ray, hit: Hit):
         """How far the coordinates of a hit may be off, where a pigment asks."""
-        if not DECIDES_TIES or not self._materials.has_edges or self.intersections in ("offset", "ulp"):
+        if not self._materials.has_edges or self.intersections in ("offset", "ulp"):
             return self.types.Vector3(0)
         return coordinate_errors(hit.p, hit.n, ray.d, hit.t, self._tracer.error(ray, hit))
 

@@ -313,7 +313,7 @@ struct Scene {
 
     // How far a ray and a patch may be off from one another, at distance t.
     static Real blur(const Rays<Real>& rays, int lane, const Patch<Real>& patch, Real t) {
-        return decides_ties ? rays.t_min[lane] + patch.error_at(rays.reach)[lane] + std::abs(t) * rays.spread[lane] : 0;
+        return rays.t_min[lane] + patch.error_at(rays.reach)[lane] + std::abs(t) * rays.spread[lane];
     }
 
     // Calls visit(object, crossing) for the objects that some ray crosses before `limit`, and maybe others, until it

@@ -232,7 +232,7 @@ template <typename Real>
         const Vector<L> normal(plane.anchor);
         const L slope = dot(normal, rays.direction);
         const L height = dot(normal, rays.origin) + L(plane.size);
-        const L error = decides_ties ? rays.t_min + plane.error_at(rays.reach) : zero;
+        const L error = rays.t_min + plane.error_at(rays.reach);
         const Indices<Real> patch = k;
         const L t = select(abs(height) <= error, zero, -height / slope);
         const L t_error = (error + abs(t) * rays.spread) / abs(slope);

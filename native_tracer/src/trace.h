@@ -167,7 +167,7 @@ Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const H
         surface.error = rounding_error(reach, hits.t);
         surface.lean = L(patch.curvature) * surface.error;
 
-        const L off = decides_ties ? rays.t_min + patch.error_at(rays.reach) + hits.t * rays.spread : zero;
+        const L off = rays.t_min + patch.error_at(rays.reach) + hits.t * rays.spread;
         const L blur = L(most_blur<Real>) * (reach + hits.t);
         surface.pigment = color_at(*object.pigment, {surface.point, surface.outward, rays.direction, off, blur});
         const Finish<Real>& finish = object.finish;
