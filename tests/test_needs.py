@@ -13,7 +13,8 @@ from strategies import scenes
 
 from converter.scene import geometry
 from converter.scene.model import Camera, Finish, Light, Object, Polyhedron, Scene, Solid, Sphere
-from converter.scene.needs import MAX_DEPTH, MAX_DEPTH_BRANCHING, eta, is_index, scene_needs
+from converter.scene.depth import MAX_DEPTH
+from converter.scene.needs import eta, is_index, scene_needs
 from converter.scene.notices import ior_notices, scene_notices
 from converter.scene.parser import load_scene, parse_scene
 from converter.scene.settings import IorReading, Settings
@@ -103,9 +104,12 @@ def test_lighting(finish: Finish, lights: tuple[Light, ...], lit: bool, glossy: 
         ((replace(MIRROR, kr=0.5),), 1 / 512, 9),
         ((replace(MIRROR, kr=0.5), MIRROR), 1 / 512, 18),
         ((replace(MIRROR, kr=1.0),), 1 / 512, MAX_DEPTH),
+        ((replace(MIRROR, kr=0.99),), 1 / 512, 621),
         ((replace(MIRROR, kr=0.999),), 1 / 512, MAX_DEPTH),
         ((MIRROR,), 0, MAX_DEPTH),
-        ((BOTH,), 1 / 512, MAX_DEPTH_BRANCHING),
+        ((BOTH,), 1 / 512, 28),
+        ((BOTH,), 0, 15),  # 2^16 - 1 rays
+        ((replace(BOTH, kt=0.9),), 1 / 512, 60),
         ((replace(BOTH, kr=0.1, kt=0.1),), 1 / 512, 3),
         ((MATTE,), 1 / 512, 0),
         ((MATTE,), 0, 0),

@@ -40,8 +40,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from converter.scene.attenuation import least_divisor
+from converter.scene.depth import depth_limit
 from converter.scene.model import Checker, Color, Pigment, Scene, Solid
-from converter.scene.needs import SceneNeeds, depth_limit, scene_needs
+from converter.scene.needs import SceneNeeds, scene_needs
 from converter.scene.settings import Settings
 
 Floats = NDArray[np.float64]
@@ -87,7 +88,8 @@ def cutoff_bound(scene: Scene, settings: Settings) -> CutoffBound:
     needs = scene_needs(scene, settings)
     used = [scene.finishes[i] for i in needs.finishes]
     weights = np.array([(f.kr, f.kt) for f in used], dtype=np.float64).reshape(-1, 2)
-    full_depth = depth_limit(used, replace(settings, cutoff=0))
+    full_depth = depth_limit(used, replace(settings, cutoff=0)).bounces
+    full_depth = max(full_depth, needs.max_depth)
     with np.errstate(over="ignore", invalid="ignore"):  # numbers may be as large as they like
         dropped = _worst_loss(weights, settings.cutoff, needs.max_depth, np.ones(full_depth + 1))
         local, unbounded_by = _local_colors(scene, needs)
