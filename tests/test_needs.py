@@ -12,8 +12,8 @@ from hypothesis import strategies as st
 from strategies import scenes
 
 from converter.scene import geometry
-from converter.scene.model import Camera, Finish, Light, Object, Polyhedron, Scene, Solid, Sphere
 from converter.scene.depth import MAX_DEPTH
+from converter.scene.model import Camera, Finish, Light, Object, Polyhedron, Scene, Solid, Sphere
 from converter.scene.needs import eta, is_index, scene_needs
 from converter.scene.notices import ior_notices, scene_notices
 from converter.scene.parser import load_scene, parse_scene
@@ -117,6 +117,16 @@ def test_lighting(finish: Finish, lights: tuple[Light, ...], lit: bool, glossy: 
 )
 def test_depth(finishes: tuple[Finish, ...], cutoff: float, depth: int) -> None:
     assert scene_needs(scene_of(*finishes), Settings(cutoff=cutoff)).max_depth == depth
+
+
+@pytest.mark.parametrize(("name", "depth"), [("course_glass_9", 60), ("panes_33", 1000)])
+def test_panes_are_followed_to_what_is_behind(name: str, depth: int) -> None:
+    """Of n panes a ray crosses 2 n faces."""
+    count = int(name.rpartition("_")[2])
+    finish = Finish(0.1, 0.1, 0.8, 400, 0.1, 0.9, 1.45) if count == 9 else Finish(0, 0, 0, 1, 0, 1, 1)
+    limit = scene_needs(scene_of(finish), Settings()).depth
+    assert limit.bounces == depth > 2 * count
+    assert limit.waiting <= 16
 
 
 def test_depth_can_be_set() -> None:

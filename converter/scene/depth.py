@@ -129,9 +129,7 @@ def _bounded(pairs: frozenset[tuple[float, float]], cutoff: float, limit: int, m
         wait: dict[int | None, int] = {None: 0}
         for left, pairs_left in successors.items():
             more[left] = 1 + max(rays[r] + rays[t] for r, t in pairs_left)
-            wait[left] = max(
-                max(waiting[r] + (r is not None and t is not None), waiting[t]) for r, t in pairs_left
-            )
+            wait[left] = max(max(waiting[r] + (r is not None and t is not None), waiting[t]) for r, t in pairs_left)
         if more[start] >= most:
             return depth, waiting[start]
         if more == rays and wait == waiting:
