@@ -26,9 +26,10 @@ followed loses at most
 
     E(w, j) = max over finishes of  sum over k in {kr, kt} of  (w k B(D - j - 1) if w k < e, else E(w k, j + 1)),
 
-D being what `--max-depth` says, else the most bounces that are ever followed. Where the limit for e, which may be lower,
-ends a path before the cut-off does, what lies below is lost in the same way. Only weights that a product of coefficients can have are looked at; where
-these are very many, near ones are taken together, as intervals, each of which counts with its worse end.
+D being what `--max-depth` says, else the most bounces that are ever followed. Where the limit for e, which may be
+lower, ends a path before the cut-off does, what lies below is lost in the same way. Only weights that a product of
+coefficients can have are looked at; where these are very many, near ones are taken together, as intervals, each of
+which counts with its worse end.
 """
 
 import math
