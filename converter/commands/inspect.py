@@ -17,6 +17,13 @@ DEFAULT = "native"
 """The method that stands for all that compute in double precision, as those do that draw where nobody chooses."""
 MOST_LEVELS = 8
 """Levels of 255 up to which a bound is told: beyond, it says less of the picture than of how often rays may split."""
+RULES = {
+    "set": " (--max-depth)",
+    "cutoff": " (all that the cut-off asks for)",
+    "bounces": " (the most that are ever followed)",
+    "rays": " (one more, and a pixel might have 65536 rays)",
+}
+"""What made the limit of depth."""
 COEFFICIENTS = ("ka", "kd", "ks", "alpha", "kr", "kt", "ior")
 
 
@@ -136,7 +143,7 @@ def _overview(found: dict[str, Any]) -> list[tuple[str, str]]:
     rows.append(("needs", ", ".join(shading + bounces) or "nothing but ambient light"))
     if bounces:
         split = "rays split in two" if needs["branches"] else "every ray has one successor"
-        rows.append(("depth", f"{needs['max_depth']} bounces, {split}"))
+        rows.append(("depth", f"{needs['max_depth']} bounces{RULES[needs['max_depth_rule']]}, {split}"))
     rows.append(("cut-off", _cutoff(found["cutoff"])))
     for kind, indices in unused.items():
         if indices:

@@ -26,9 +26,10 @@ followed loses at most
 
     E(w, j) = max over finishes of  sum over k in {kr, kt} of  (w k B(D - j - 1) if w k < e, else E(w k, j + 1)),
 
-D being the depth limit with a cut-off of 0. Where the limit for e, which may be lower, ends a path before the cut-off
-does, what lies below is lost in the same way. Only weights that a product of coefficients can have are looked at; where
-these are very many, near ones are taken together, as intervals, each of which counts with its worse end.
+D being what `--max-depth` says, else the most bounces that are ever followed. Where the limit for e, which may be
+lower, ends a path before the cut-off does, what lies below is lost in the same way. Only weights that a product of
+coefficients can have are looked at; where these are very many, near ones are taken together, as intervals, each of
+which counts with its worse end.
 """
 
 import math
@@ -40,8 +41,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from converter.scene.attenuation import least_divisor
+from converter.scene.depth import MAX_DEPTH, depth_limit
 from converter.scene.model import Checker, Color, Pigment, Scene, Solid
-from converter.scene.needs import SceneNeeds, depth_limit, scene_needs
+from converter.scene.needs import SceneNeeds, scene_needs
 from converter.scene.settings import Settings
 
 Floats = NDArray[np.float64]
@@ -87,7 +89,8 @@ def cutoff_bound(scene: Scene, settings: Settings) -> CutoffBound:
     needs = scene_needs(scene, settings)
     used = [scene.finishes[i] for i in needs.finishes]
     weights = np.array([(f.kr, f.kt) for f in used], dtype=np.float64).reshape(-1, 2)
-    full_depth = depth_limit(used, replace(settings, cutoff=0))
+    everything = replace(settings, cutoff=0, max_depth=MAX_DEPTH if settings.max_depth is None else settings.max_depth)
+    full_depth = depth_limit(used, everything).bounces
     with np.errstate(over="ignore", invalid="ignore"):  # numbers may be as large as they like
         dropped = _worst_loss(weights, settings.cutoff, needs.max_depth, np.ones(full_depth + 1))
         local, unbounded_by = _local_colors(scene, needs)

@@ -28,6 +28,7 @@ def integrator(
         "ambient": color(scene.ambient),
         "background": color(needs.background),
         "max_depth": needs.max_depth,
+        "waiting": needs.depth.waiting,
         "cutoff": settings.cutoff,
         "reflection": needs.reflects,
         "refraction": needs.refracts,

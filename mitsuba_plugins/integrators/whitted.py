@@ -74,6 +74,10 @@ class Whitted(mi.SamplingIntegrator):
        - |int|
        - Bounces after the primary ray (Default: 16)
 
+     * - waiting
+       - |int|
+       - Most refracted rays of a tree that wait while mirrored ones are followed (Default: max_depth)
+
      * - cutoff
        - |float|
        - A ray whose weight, the product of kr and kt so far, is below it is not traced (Default: 1/512)
@@ -142,7 +146,7 @@ class Whitted(mi.SamplingIntegrator):
         self.branching = props.get("branching", True) and self.reflection and self.refraction
         self.shadows = props.get("shadows", True)
         self.highlights = props.get("highlights", True)
-        self.stack_size = max(1, props.get("max_depth", 16))
+        self.stack_size = max(1, props.get("waiting", props.get("max_depth", 16)))
         self._tracer: Any = None
         self._eye_contact: EyeContact | None = None
 
