@@ -5,17 +5,17 @@ bounces, and, where rays branch, fewer than `MOST_RAYS` rays for one primary ray
 
     R(w, n) = 1 + max over finishes of  sum over k in {kr, kt}, k > 0 and w k >= cutoff, of  R(w k, n - 1),
 
-n being the bounces that are left, R(w, 0) = 1. While the mirrored ray is followed first, the transmitted one waits; so
-many wait at once at most:
+n being the bounces that are left, R(w, 0) = 1. It grows with w, and is worked out for weights rounded up to powers of a
+number near 1, from the cut-off on.
 
-    W(w, n) = max over finishes of  max(W(w kr, n - 1) + 1, W(w kt, n - 1)) where both are followed, else W of the one.
-
-Both grow with w. They are worked out for weights rounded up to powers of a number near 1.
+While one of two successors is followed, the other waits. Where the lighter one is followed first, a ray has as many
+below the one that waits as below itself, if not more, by that bound: so if W rays may wait, R >= 2^(W + 1) - 1.
 """
 
 import math
+from collections.abc import Iterable
+from ctypes import c_float
 from dataclasses import dataclass
-from functools import lru_cache
 from typing import Literal
 
 from converter.scene.model import Finish
@@ -28,9 +28,12 @@ MOST_RAYS = 1 << 16
 STEPS = 1024
 """Weights that are told apart between the cut-off and 1."""
 SLACK = 1e-6
-"""By how much the logarithm, to base 2, of a coefficient may grow where it is rounded to single precision."""
+"""By how much the logarithm, to base 2, of a weight may grow where it is rounded to single precision."""
 
 Rule = Literal["none", "set", "cutoff", "bounces", "rays"]
+Costs = tuple[int, int]
+"""Steps that a finish's coefficients take from a weight at least, the heavier one's first; more than there are: none
+follows."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -42,7 +45,7 @@ class DepthLimit:
         rule: what made it so: no ray is followed at all, `--max-depth` says so, the cut-off ends all trees before,
             `MAX_DEPTH`, or `MOST_RAYS`.
         needed: bounces after which the cut-off has ended every tree; None where it may never do.
-        waiting: most rays of a tree that wait at once, if of two successors the mirrored one is followed first.
+        waiting: most rays of a tree that wait at once, if of two successors the lighter one is followed first.
 
     """
 
@@ -57,28 +60,30 @@ class DepthLimit:
         return self.needed is None or self.bounces < self.needed
 
 
-def depth_limit(finishes: list[Finish], settings: Settings) -> DepthLimit:
+def depth_limit(finishes: Iterable[Finish], settings: Settings) -> DepthLimit:
     """The limit where objects have these finishes."""
     cutoff = settings.cutoff
-    needed = _needed(max((max(f.kr, f.kt) for f in finishes), default=0.0), cutoff)
+    pairs = {(min(f.kr, f.kt), max(f.kr, f.kt)) for f in finishes}
+    largest = max((heavier for _, heavier in pairs), default=0.0)
+    needed = _needed(largest, cutoff)
     if needed == 0:
         return DepthLimit(0, "none", 0, 0)
-    limit, rule = MAX_DEPTH, "bounces"
-    if settings.max_depth is not None:
-        limit, rule = settings.max_depth, "set"
-    if needed is not None and needed <= limit:
-        limit, rule = needed, "cutoff"
-    if not any(can_branch(f, cutoff) for f in finishes):
-        return DepthLimit(limit, rule, needed, 0)  # type: ignore[arg-type]
-    pairs = frozenset((f.kr, f.kt) for f in finishes)
-    depth, waiting = _bounded(pairs, cutoff, limit, math.inf if settings.max_depth is not None else MOST_RAYS)
-    return DepthLimit(depth, rule if depth == limit else "rays", needed, waiting)  # type: ignore[arg-type]
+    limit, rule = _unless_it_branches(needed, settings.max_depth)
+    if not any(follows(lighter, largest, cutoff) for lighter, _ in pairs):
+        return DepthLimit(limit, rule, needed, 0)
+    start, costs = _in_steps(pairs, largest, cutoff)
+    rays = _most_rays(start, costs)
+    if settings.max_depth is None and rays >= MOST_RAYS:
+        depth, rays = _deepest(start, costs, limit)
+        if depth < limit:
+            limit, rule = depth, "rays"
+    waiting = limit if rays == math.inf else min(limit, (int(rays) + 1).bit_length() - 2)
+    return DepthLimit(limit, rule, needed, waiting)
 
 
-def can_branch(finish: Finish, cutoff: float) -> bool:
-    """Whether a ray that meets this finish may have two successors."""
-    weaker = min(finish.kr, finish.kt)
-    return weaker > 0 and (weaker >= cutoff or max(finish.kr, finish.kt) > 1)
+def follows(coefficient: float, largest: float, cutoff: float) -> bool:
+    """Whether a ray may follow with this coefficient where the largest one of the scene is `largest`."""
+    return coefficient > 0 and (coefficient >= cutoff or largest > 1)
 
 
 def _needed(largest: float, cutoff: float) -> int | None:
@@ -90,49 +95,59 @@ def _needed(largest: float, cutoff: float) -> int | None:
     return math.ceil(math.log(cutoff) / math.log(largest))
 
 
-@lru_cache(maxsize=64)
-def _bounded(pairs: frozenset[tuple[float, float]], cutoff: float, limit: int, most: float) -> tuple[int, int]:
-    """The greatest depth up to `limit` with fewer than `most` rays, and how many rays may wait there.
+def _unless_it_branches(needed: int | None, max_depth: int | None) -> tuple[int, Rule]:
+    limit = MAX_DEPTH if max_depth is None else max_depth
+    if needed is not None and needed <= limit:
+        return needed, "cutoff"
+    return limit, "bounces" if max_depth is None else "set"
 
-    A weight is told by how many steps it may still lose until it is below the cut-off; -1: it never is.
+
+def _in_steps(pairs: Iterable[tuple[float, float]], largest: float, cutoff: float) -> tuple[int, list[Costs]]:
+    """Steps that a weight of 1 may lose until it is below the cut-off, and the costs of finishes that may matter.
+
+    Where the cut-off may never end a tree, nothing costs anything.
     """
-    start, step = -1, 1.0
-    if 0 < cutoff < 1:
+    start, step = 0, math.inf
+    if 0 < cutoff < 1 and largest <= 1:
         start, step = STEPS, -math.log2(cutoff) / STEPS
 
-    def cost(coefficient: float) -> int | None:
-        """Steps that a factor takes at least; None: no ray is followed, -1: weights may grow."""
-        if coefficient == 0:
-            return None
-        lost = -math.log2(coefficient) - SLACK
-        return math.floor(max(lost, 0.0) / step) if coefficient <= 1 else -1
+    def cost(coefficient: float) -> int:
+        # Rounded, so that what is as heavy in single precision costs the same.
+        rounded = c_float(min(coefficient, 1.0)).value
+        return math.floor(max(-math.log2(rounded or coefficient) - SLACK, 0.0) / step)
 
-    def after(left: int, lost: int | None) -> int | None:
-        if lost is None:
-            return None
-        if left == -1 or lost == -1:
-            return -1
-        return left - lost if left >= lost else None
+    costs: list[Costs] = []
+    for heavy, light in sorted({(cost(b), cost(a) if a > 0 else start + 1) for a, b in pairs if b > 0}):
+        if not costs or light < costs[-1][1]:  # else the one before costs less both ways
+            costs.append((heavy, light))
+    return start, costs
 
-    costs = {(cost(kr), cost(kt)) for kr, kt in pairs}
-    successors: dict[int, set[tuple[int | None, int | None]]] = {}
-    pending = [start]
-    while pending:
-        left = pending.pop()
-        if left not in successors:
-            successors[left] = {(after(left, r), after(left, t)) for r, t in costs}
-            pending += [state for pair in successors[left] for state in pair if state is not None]
-    rays: dict[int | None, int] = {None: 0, **dict.fromkeys(successors, 1)}
-    waiting: dict[int | None, int] = {None: 0, **dict.fromkeys(successors, 0)}
+
+def _most_rays(start: int, costs: list[Costs]) -> float:
+    """R for a weight of 1 and as many bounces as there may be."""
+    if costs[0][0] == 0:
+        return math.inf
+    rays: list[float] = []
+    for left in range(start + 1):
+        below = ((rays[left - a] if a <= left else 0.0) + (rays[left - b] if b <= left else 0.0) for a, b in costs)
+        rays.append(1.0 + max(below))
+    return rays[start]
+
+
+def _deepest(start: int, costs: list[Costs], limit: int) -> tuple[int, int]:
+    """The greatest depth up to `limit` with fewer than `MOST_RAYS` rays, and R there."""
+    import numpy as np
+
+    rays = np.ones(start + 1, dtype=np.int64)
     for depth in range(limit):
-        more: dict[int | None, int] = {None: 0}
-        wait: dict[int | None, int] = {None: 0}
-        for left, pairs_left in successors.items():
-            more[left] = 1 + max(rays[r] + rays[t] for r, t in pairs_left)
-            wait[left] = max(max(waiting[r] + (r is not None and t is not None), waiting[t]) for r, t in pairs_left)
-        if more[start] >= most:
-            return depth, waiting[start]
-        if more == rays and wait == waiting:
-            break
-        rays, waiting = more, wait
-    return limit, waiting[start]
+        more = np.zeros_like(rays)
+        for pair in costs:
+            below = np.zeros_like(rays)
+            for cost in pair:
+                below[cost:] += rays[: max(start + 1 - cost, 0)]
+            np.maximum(more, below, out=more)
+        more += 1
+        if more[start] >= MOST_RAYS:
+            return depth, int(rays[start])
+        rays = more
+    return limit, int(rays[start])

@@ -4,7 +4,7 @@ import sys
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-from converter.scene.depth import DepthLimit, can_branch, depth_limit
+from converter.scene.depth import DepthLimit, depth_limit, follows
 from converter.scene.model import Color, Finish, Polyhedron, Scene, Shape, Sphere, Vector
 from converter.scene.settings import IorReading, Settings
 
@@ -66,10 +66,11 @@ def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
     """Work out what `scene`, drawn with `settings`, needs."""
     finishes = tuple(sorted({o.finish for o in scene.objects}))
     used = [scene.finishes[i] for i in finishes]
-    # A ray of the first bounce weighs kr or kt: below the cut-off it is never traced, so nothing needs it.
-    reflects = any(f.kr > 0 and f.kr >= settings.cutoff for f in used)
-    refracts = any(f.kt > 0 and f.kt >= settings.cutoff for f in used)
-    branches = any(can_branch(f, settings.cutoff) for f in used)
+    largest = max((max(f.kr, f.kt) for f in used), default=0.0)
+    reflects, refracts, branches = (
+        any(follows(coefficient(f), largest, settings.cutoff) for f in used)
+        for coefficient in (lambda f: f.kr, lambda f: f.kt, lambda f: min(f.kr, f.kt))
+    )
     facts = _polyhedron_facts(scene)
     depth = depth_limit(used, settings)
     bounces = depth.bounces > 0
