@@ -50,7 +50,9 @@ Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 MOST_WEIGHTS = 512
-"""Intervals of weights that are told apart at one depth."""
+"""Intervals of weights that are told apart at one depth, ..."""
+MOST_PRODUCTS = 1 << 22
+"""... fewer where there are so many products of them and the coefficients at all depths: it takes a second or two."""
 ROUNDING = 2.0**-20
 """Part of the brightest colour by which two pictures may differ because their pixels are rounded to single precision,
 and by which a highlight may exceed 1."""
@@ -222,18 +224,19 @@ def _levels(coefficients: Floats, cutoff: float, depth: int) -> Iterator[_Level]
     least, most = np.minimum(coefficients, single), np.maximum(coefficients, single)
     low = high = np.ones(1)
     step = 2.0**-40  # equal but for rounding: the same coefficients in another order
+    count = min(MOST_WEIGHTS, max(MOST_PRODUCTS // (len(coefficients) * depth), 8)) if depth else 0
     for _ in range(depth):
         if not len(low):
             return
         lows, highs = np.outer(low, least), np.outer(high, most)
         followed = (highs >= cutoff) & (highs > 0)
         successor = np.full(followed.shape, -1)
-        low, high, successor[followed], step = _merged(np.maximum(lows[followed], cutoff), highs[followed], step)
+        low, high, successor[followed], step = _merged(np.maximum(lows[followed], cutoff), highs[followed], step, count)
         yield _Level(lows, highs, successor)
 
 
-def _merged(low: Floats, high: Floats, step: float) -> tuple[Floats, Floats, Indices, float]:
-    """Few intervals that hold the given ones, and for each of these the index of the one that it is in.
+def _merged(low: Floats, high: Floats, step: float, most: int) -> tuple[Floats, Floats, Indices, float]:
+    """At most so many intervals that hold the given ones, and for each of these the index of the one that it is in.
 
     They hold what lies between two multiples of `step` in log2 of `low`; a larger one is taken, and returned, if that
     leaves too many.
@@ -242,7 +245,7 @@ def _merged(low: Floats, high: Floats, step: float) -> tuple[Floats, Floats, Ind
     while True:
         _, index = np.unique(np.floor(logarithms / step), return_inverse=True)
         count = int(index.max(initial=-1)) + 1
-        if count <= MOST_WEIGHTS:
+        if count <= most:
             break
         step *= 2
     lows, highs = np.full(count, np.inf), np.zeros(count)
