@@ -371,7 +371,7 @@ class Whitted(mi.SamplingIntegrator):
     def _bands(self, sensor, offsets, progress):
         width, height = sensor.film().crop_size()
         table = column(mi.Float64, offsets)
-        pace = Pace(self.branching)
+        pace = Pace(self.branching, self.max_depth[0])
         self.pixels_too_deep = 0
         first = 0
         while first < height:
