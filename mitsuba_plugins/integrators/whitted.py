@@ -277,13 +277,12 @@ class Whitted(mi.SamplingIntegrator):
             radiance += weight * dr.select(hit.valid, local, self.types.Color3(self.background))
 
             depth += 1
-            mirror_weight, mirrors = self._successor_weight(self.reflection, weight * finish.kr, hit.valid)
-            through_weight, refracts = self._successor_weight(self.refraction, weight * finish.kt, hit.valid)
-            shallow = depth <= self.max_depth
+            follows = hit.valid & (depth <= self.max_depth)
+            mirror_weight, mirrors = self._successor_weight(self.reflection, weight * finish.kr, follows)
+            through_weight, refracts = self._successor_weight(self.refraction, weight * finish.kt, follows)
             if dr.hint(self.depth_limited, mode="scalar"):
-                too_deep |= (mirrors | refracts) & ~shallow
-            mirrors &= shallow
-            refracts &= shallow
+                heavier = weight * dr.maximum(finish.kr, finish.kt)
+                too_deep |= hit.valid & (depth > self.max_depth) & (heavier > 0) & (heavier >= self.cutoff)
             active = mirrors | refracts
             if dr.hint(self.branching, mode="scalar"):
                 through, mirrored = self.transmitted(ray, hit, finish.eta)[0], self.reflected(ray, hit)
