@@ -4,7 +4,6 @@ import random
 import re
 import time
 from dataclasses import replace
-from fractions import Fraction
 from math import comb
 
 import numpy as np
@@ -71,13 +70,9 @@ cutoffs = st.one_of(st.sampled_from([0.0, 1 / 512]), st.floats(1e-6, 0.5))
 
 def rays_of_one_finish(kr: float, kt: float, cutoff: float, depth: int) -> int:
     """All rays where every one meets a finish with kr and kt up to 1: by how many of each lead to it."""
-    r, t = Fraction(kr), Fraction(kt)
-    return sum(
-        comb(n, i)
-        for n in range(depth + 1)
-        for i in range(n + 1)
-        if n == 0 or (r**i * t ** (n - i) > 0 and r**i * t ** (n - i) >= Fraction(cutoff))
-    )
+    mirrored, through = [kr**n for n in range(depth + 1)], [kt**n for n in range(depth + 1)]
+    weights = ((n, i, mirrored[i] * through[n - i]) for n in range(1, depth + 1) for i in range(n + 1))
+    return 1 + sum(comb(n, i) for n, i, weight in weights if weight > 0 and weight >= cutoff)
 
 
 @given(st.floats(0, 1), st.floats(0, 1), cutoffs)
@@ -95,6 +90,18 @@ def test_the_bound_is_no_looser_than_it_need_be(kr, kt, cutoff):
     assert limit.rule == "rays" and limit.acts
     assert rays_of_one_finish(kr, kt, cutoff, limit.bounces) < MOST_RAYS
     assert rays_of_one_finish(kr, kt, cutoff, limit.bounces + 1) > 0.9 * MOST_RAYS
+
+
+@pytest.mark.parametrize(("kr", "kt"), [(0.5, 0.8), (0.3, 0.85), (0.6, 0.7)])
+def test_the_bound_acts_as_soon_as_there_are_too_many_rays(kr, kt):
+    few, many = 1.0, 1e-8  # cut-offs
+    while few > (1 + 1e-4) * many:
+        middle = (few * many) ** 0.5
+        if rays_of_one_finish(kr, kt, middle, 120) < MOST_RAYS:
+            few = middle
+        else:
+            many = middle
+    assert depth_limit([passing(kr, kt)], Settings(cutoff=many)).rule == "rays"
 
 
 @given(st.lists(finishes, min_size=1, max_size=4), cutoffs, st.integers(0, 2**32))

@@ -161,7 +161,7 @@ def _cutoff(found: dict[str, Any], needs: dict[str, Any]) -> str:
         within = "" if needs["max_depth_rule"] in ("none", "cutoff") else f" within {needs['max_depth']} bounces"
         return f"{share}: drops no ray{within}"
     if 255 * bound > MOST_LEVELS:
-        return f"{share}: the bound is loose here; whitted compare --reference native-cutoff-0 measures"
+        return f"{share}: the bound is loose here; whitted compare --reference native-cutoff-4096 measures"
     return f"{share}: no channel is off by more than {_rounded_up(bound)} ({_rounded_up(255 * bound)} of 255 levels)"
 
 

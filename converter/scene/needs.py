@@ -67,10 +67,9 @@ def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
     finishes = tuple(sorted({o.finish for o in scene.objects}))
     used = [scene.finishes[i] for i in finishes]
     largest = max((max(f.kr, f.kt) for f in used), default=0.0)
-    reflects, refracts, branches = (
-        any(follows(coefficient(f), largest, settings.cutoff) for f in used)
-        for coefficient in (lambda f: f.kr, lambda f: f.kt, lambda f: min(f.kr, f.kt))
-    )
+    reflects = any(follows(f.kr, largest, settings.cutoff) for f in used)
+    refracts = any(follows(f.kt, largest, settings.cutoff) for f in used)
+    branches = any(follows(min(f.kr, f.kt), largest, settings.cutoff) for f in used)
     facts = _polyhedron_facts(scene)
     depth = depth_limit(used, settings)
     bounces = depth.bounces > 0

@@ -360,7 +360,8 @@ class Whitted(mi.SamplingIntegrator):
 
         Yields:
             The first row of a finished band within the film's crop window, and its pixels' colours (Color3f), row by
-            row; `pixels_too_deep` counts those among them. After every launch `progress`, if any, is called with the finished share of the picture.
+            row. Its pixels are among `pixels_too_deep` by then. After every launch `progress`, if any, is called with
+            the finished share of the picture.
 
         """
         offsets = self.sample_offsets(spp or sensor.sampler().sample_count())
