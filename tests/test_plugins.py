@@ -278,7 +278,7 @@ HOST_DIVISIONS = {
     "integrators/contacts.py": {"of"},
     "integrators/geometry.py": {"_normalised"},
     "integrators/rounding.py": {"camera_errors"},
-    "integrators/pace.py": {"rows", "samples", "launch"},
+    "integrators/pace.py": {"__init__", "rows", "samples", "launch"},
     "trial.py": {"_memory"},
     "integrators/whitted.py": {"__init__", "_bands", "_corners", "sample_offsets"},
 }

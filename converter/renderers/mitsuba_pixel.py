@@ -156,12 +156,12 @@ class _Tracer:
             }
             for kind, coefficient in (("reflected", kr[i]), ("transmitted", kt[i])):
                 weight = record["weight"] * coefficient
-                if coefficient == 0:
+                if weight == 0:
                     continue
-                if record["depth"] + 1 > self._max_depth:
-                    record["dropped"][kind] = "depth"
-                elif weight < self._cutoff:
+                if weight < self._cutoff:
                     record["dropped"][kind] = "cutoff"
+                elif record["depth"] + 1 > self._max_depth:
+                    record["dropped"][kind] = "depth"
                 else:
                     child = {"kind": kind, "weight": weight, "depth": record["depth"] + 1}
                     record["children"].append(child)

@@ -73,6 +73,7 @@ class Tracer {
     RayStack<Real> reflected_, transmitted_, batch_;
     Color<Sum>* sums_ = nullptr;
     RayCounts* counts_ = nullptr;
+    std::vector<bool> too_deep_;  // by pixel, up to the last one of which the depth limit dropped a ray
 };
 
 template <typename Real, typename Observer>
@@ -83,6 +84,7 @@ bool Tracer<Real, Observer>::trace(PrimaryRays primary_rays, Color<Sum>* sums, R
     counts_ = &counts;
     reflected_.clear();
     transmitted_.clear();
+    too_deep_.clear();
     while (!stop.load(std::memory_order_relaxed)) {
         if (reflected_.size() + transmitted_.size() < batch_size && !primary_rays.done()) {
             // Whole rows of pixels, for where a row is cut depends on the number of lanes.
@@ -102,6 +104,7 @@ bool Tracer<Real, Observer>::trace(PrimaryRays primary_rays, Color<Sum>* sums, R
                 trace_group(batch_.group(first));
             }
         } else {
+            counts.pixels_too_deep += static_cast<std::uint64_t>(std::count(too_deep_.begin(), too_deep_.end(), true));
             return true;
         }
     }
@@ -345,6 +348,16 @@ Mask<Real> Tracer<Real, Observer>::worthwhile(const Group<Real>& group, RayKind 
     const Mask<Real> weighty = weight >= L(cutoff_);
     const Mask<Real> shallow = group.depth < Indices<Real>(max_depth_);
     observer_.dropped(group, kind, wanted, weighty, shallow);
+    const Mask<Real> too_deep = wanted & weighty & ~shallow;
+    if (any(too_deep)) [[unlikely]] {
+        for (unsigned lanes = too_deep.bits(); lanes != 0; lanes &= lanes - 1) {
+            const auto pixel = static_cast<std::size_t>(group.pixel[std::countr_zero(lanes)]);
+            if (pixel >= too_deep_.size()) {
+                too_deep_.resize(pixel + 1);
+            }
+            too_deep_[pixel] = true;
+        }
+    }
     return wanted & weighty & shallow;
 }
 
