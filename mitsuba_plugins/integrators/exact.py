@@ -126,7 +126,8 @@ class ExactSurfaces:
             tested = dr.zeros(mi.UInt32, width)
             while close & (tested < self.records.surface_count):
                 met, met_error, _ = self._meet(ray, tested, close)
-                met_error = dr.minimum(met_error, blur * (met + reach))
+                most = blur * (met + reach)
+                met_error = dr.select(met_error <= most, met_error, most)
                 error = dr.select((met < nearest) | ((met == nearest) & (met_error > error)), met_error, error)
                 nearest = dr.minimum(met, nearest)
                 tested += 1
@@ -136,7 +137,8 @@ class ExactSurfaces:
             tested = dr.zeros(mi.UInt32, width)
             while close & (tested < self.records.surface_count) & (index == NOTHING):
                 met, met_error, met_record = self._meet(ray, tested, close)
-                met_error = dr.minimum(met_error, blur * (met + reach))
+                most = blur * (met + reach)
+                met_error = dr.select(met_error <= most, met_error, most)
                 ties = (met < dr.inf) & (met - nearest <= error + met_error)
                 t = dr.select(ties, met, t)
                 index = dr.select(ties, tested, index)

@@ -220,7 +220,7 @@ class Whitted(mi.SamplingIntegrator):
         n = dr.select(hit.inside, -hit.n, hit.n)
         cosine = dr.dot(n, to_light)
         # A surface is not lit along itself, nor by a light at the very point.
-        apart = distance > 8 * epsilon(distance) * (largest(hit.p) + hit.t)
+        apart = distance > 8 * epsilon(distance) * largest(hit.p)
         facing = (
             active & (cosine > least_spread(cosine)) & apart & ~self._light_contacts.grazes(index, hit.record, active)
         )

@@ -296,9 +296,13 @@ struct Scene {
     Lanes<Real> distance_errors(const Rays<Real>& rays, const Crossing<Real>& crossing) const {
         return Lanes<Real>::gather([&](int lane) {
             const Real t = crossing.t[lane];
-            return std::isfinite(t) ? std::min(distance_error(rays, lane, crossing.patch[lane], t),
-                                               most_blur<Real> * (t + rays.reach[lane]))
-                                    : Real(0);
+            if (!std::isfinite(t)) {
+                return Real(0);
+            }
+            // No number where the point is rounded to a sphere's centre.
+            const Real error = distance_error(rays, lane, crossing.patch[lane], t);
+            const Real most = most_blur<Real> * (t + rays.reach[lane]);
+            return error <= most ? error : most;
         });
     }
 

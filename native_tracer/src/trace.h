@@ -205,7 +205,7 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
     // Shadow rays start on the viewer's side of the surface, as the reflected ray does.
     Rays<Real> shadow_rays{surface.point, surface.normal, surface.error,         hits.object,
                            hits.patch,    hits.inside,    L(least_spread<Real>), reach_of(surface.error)};
-    const L point_error = L(tie_epsilon<Real> / (4 * input_epsilon<Real>)) * surface.error;
+    const L point_error = L(8 * tie_epsilon<Real>) * max_norm(surface.point);
     for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
         const Light<Real>& light = scene_.lights[i];
         const Vector<L> path = Vector<L>(light.position) - surface.point;
