@@ -92,36 +92,33 @@ class Tracer {
         if (record) {
             record->rays[std::size_t(index)].local = triple(color);
         }
-        Real kr = static_cast<Real>(on(On::kr_kt_exchanged)              ? finish.kt
-                                    : on(On::ks_for_kr) && finish.kr > 0 ? finish.ks
-                                                                         : finish.kr);
-        Real kt = static_cast<Real>(on(On::kr_kt_exchanged) ? finish.kr : finish.kt);
-        if (on(On::kr_ignored) || (on(On::kr_inside_ignored) && hit.inside)) {
-            kr = 0;
-        } else if (on(On::kr_full) && kr > 0) {
-            kr = 1;
-        }
-        if (on(On::kt_ignored)) {
-            kt = 0;
-        } else if (on(On::kt_full) && kt > 0) {
-            kt = 1;
-        }
+        // A factor of 1 does not make the tree of rays larger: `weight` decides that, and is as it was.
+        const Real kr = factor(finish.kr, finish.kt, on(On::kr_ignored) || (on(On::kr_inside_ignored) && hit.inside));
+        const Real kt = factor(finish.kt, finish.kr, on(On::kt_ignored));
         if (kr > 0) {
             const C tint = on(On::mirrored_tinted) ? surface.pigment : C{1, 1, 1};
-            color += kr * tint * follow(mirrored(ray, surface), kr * weight, depth, record, index, Kind::reflected);
+            const Real counted = on(On::kr_full) ? 1 : on(On::ks_for_kr) ? static_cast<Real>(finish.ks) : kr;
+            color +=
+                counted * tint * follow(mirrored(ray, surface), kr * weight, depth, record, index, Kind::reflected);
         }
         if (kt > 0) {
             const C tint = on(On::transmitted_tinted) ? surface.pigment : C{1, 1, 1};
+            const Real counted = on(On::kt_full) ? 1 : kt;
             bool dark = false, total = false;
             const Ray<Real> next = transmitted(ray, hit, surface, dark, total);
             if (record) {
                 record->rays[std::size_t(index)].total_reflection = total;
             }
             if (!dark) {
-                color += kt * tint * follow(next, kt * weight, depth, record, index, Kind::transmitted);
+                color += counted * tint * follow(next, kt * weight, depth, record, index, Kind::transmitted);
             }
         }
         return on(On::clamped_per_ray) ? clamped(color) : color;
+    }
+
+    // kr or kt of a finish, of which `other` is the other one.
+    Real factor(double own, double other, bool ignored) const {
+        return ignored ? Real(0) : static_cast<Real>(on(On::kr_kt_exchanged) ? other : own);
     }
 
     // The colour that a secondary ray brings, if it is followed.
