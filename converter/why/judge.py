@@ -1,0 +1,69 @@
+"""From a scene and a picture to what explains the picture."""
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from converter.renderers.native import NativeRenderer
+from converter.scene.model import Scene
+from converter.scene.settings import Settings
+from converter.why.likeness import COMPRESSED, EXACT, errors
+from converter.why.picture import Picture, Theirs
+from converter.why.search import Found, find_causes
+from converter.why.student import Student, make_student, to_levels
+
+BLOCK = 8
+"""Edge of the squares that JPEG compresses, each by itself; it keeps their means."""
+_MEAN = 1.5
+"""Levels by which the means of nearly all blocks may differ for losses of compression to be all there is."""
+_SHARE = 0.05
+"""Share of the pixels that are wrong at least where a picture has been compressed."""
+_EXPLAINED = 0.5
+"""Share of the wrong pixels below which causes do not count as found."""
+
+
+@dataclass(frozen=True, slots=True, eq=False)
+class Judged:
+    """A picture, the right one, and what leads from one to the other."""
+
+    scene: Scene
+    settings: Settings
+    theirs: Theirs
+    reference: Picture
+    student: Student
+    found: Found
+
+
+def judge(scene: Scene, theirs: Theirs, settings: Settings) -> Judged:
+    """Look for what explains a picture of `scene`; the picture's size counts, not that of `settings`.
+
+    Raises:
+        RendererUnavailable: the native tracer or the student's is not built.
+        UnknownToStudent: the scene, or what the settings ask for, is more than the student's tracer knows.
+        ValueError: a texture cannot be read.
+
+    """
+    height, width, _ = theirs.levels.shape
+    settings = replace(settings, width=width, height=height)
+    student = make_student(scene, settings)
+    colors = np.asarray(NativeRenderer().render(scene, settings).pixels)
+    reference = to_levels(colors.reshape(-1, 3)).reshape(colors.shape)
+    found = find_causes(student, theirs.levels, reference, COMPRESSED if theirs.lossy else EXACT)
+    if not theirs.lossy and _unexplained(found) and _looks_compressed(theirs.levels, reference):
+        found = find_causes(student, theirs.levels, reference, COMPRESSED)
+    return Judged(scene, settings, theirs, reference, student, found)
+
+
+def _unexplained(found: Found) -> bool:
+    before, after = int(found.before.sum()), int(found.after.sum())
+    return before > 0 and before - after < _EXPLAINED * before
+
+
+def _looks_compressed(theirs: Picture, reference: Picture) -> bool:
+    """Whether a picture was saved with losses before it became what it is now: wrong in many pixels, but not on average."""
+    height, width = (n // BLOCK * BLOCK for n in theirs.shape[:2])
+    if min(height, width) == 0 or (errors(theirs, reference) > EXACT.tolerance).mean() < _SHARE:
+        return False
+    difference = theirs[:height, :width].astype(np.float32) - reference[:height, :width]
+    means = difference.reshape(height // BLOCK, BLOCK, width // BLOCK, BLOCK, 3).mean(axis=(1, 3))
+    return bool(np.percentile(np.abs(means).max(axis=2), 90) <= _MEAN)
