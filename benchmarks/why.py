@@ -26,7 +26,7 @@ from converter.scene.settings import Settings
 from converter.why.judge import judge
 from converter.why.likeness import EXACT, errors
 from converter.why.picture import Picture, Theirs, read_theirs
-from converter.why.student import LEVELS, Causes, Student, deviations, make_student, to_levels
+from converter.why.student import Causes, Student, deviations, make_student, to_levels
 from converter.why.trials import compatible
 
 SCENES = sorted((Path(__file__).resolve().parent.parent / "scenes").glob("*.in"))
@@ -98,9 +98,7 @@ def plant(mistakes: int, rng: random.Random, size: list[int] | None) -> tuple[Pa
 def drawn(student: Student, causes: Causes) -> Picture:
     """The picture that a tracer with these mistakes draws."""
     ys, xs = np.divmod(np.arange(student.width * student.height), student.width)
-    after = frozenset(name for name in causes if deviations()[name].part == LEVELS)
-    colors = student.colors(np.stack((xs, ys), axis=1), [causes - after])[0]
-    return student.levels(colors, after).reshape(student.height, student.width, 3)
+    return student.drawn(np.stack((xs, ys), axis=1), causes).reshape(student.height, student.width, 3)
 
 
 def changed(picture: Picture, without: Picture, name: str) -> int:

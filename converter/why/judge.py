@@ -7,15 +7,14 @@ import numpy as np
 from converter.renderers.native import NativeRenderer
 from converter.scene.model import Scene
 from converter.scene.settings import Settings
-from converter.why.likeness import COMPRESSED, EXACT, errors
+from converter.why.likeness import COMPRESSED, EXACT, mean_errors
 from converter.why.picture import Picture, Theirs
 from converter.why.search import Found, find_causes
 from converter.why.student import Student, make_student, to_levels
 
-BLOCK = 8
-"""Edge of the squares that JPEG compresses, each by itself; it keeps their means."""
 _MEAN = 1.5
-"""Levels by which the means of nearly all blocks may differ for losses of compression to be all there is."""
+"""Levels by which the means of nearly all squares may differ for losses of compression to be all there is."""
+_NEARLY_ALL = 0.9
 _SHARE = 0.05
 """Share of the pixels that are wrong at least where a picture has been compressed."""
 _EXPLAINED = 0.5
@@ -49,8 +48,10 @@ def judge(scene: Scene, theirs: Theirs, settings: Settings) -> Judged:
     colors = np.asarray(NativeRenderer().render(scene, settings).pixels)
     reference = to_levels(colors.reshape(-1, 3)).reshape(colors.shape)
     found = find_causes(student, theirs.levels, reference, COMPRESSED if theirs.lossy else EXACT)
-    if not theirs.lossy and _unexplained(found) and _looks_compressed(theirs.levels, reference):
-        found = find_causes(student, theirs.levels, reference, COMPRESSED)
+    if not theirs.lossy and _unexplained(found) and found.before.mean() >= _SHARE:
+        roughly = find_causes(student, theirs.levels, reference, COMPRESSED)
+        if _looks_compressed(student, theirs.levels, roughly):
+            found = roughly
     return Judged(scene, settings, theirs, reference, student, found)
 
 
@@ -59,11 +60,11 @@ def _unexplained(found: Found) -> bool:
     return before > 0 and before - after < _EXPLAINED * before
 
 
-def _looks_compressed(theirs: Picture, reference: Picture) -> bool:
-    """Whether a picture was saved with losses before it became what it is now: wrong in many pixels, but not on average."""
-    height, width = (n // BLOCK * BLOCK for n in theirs.shape[:2])
-    if min(height, width) == 0 or (errors(theirs, reference) > EXACT.tolerance).mean() < _SHARE:
+def _looks_compressed(student: Student, theirs: Picture, found: Found) -> bool:
+    """Whether the causes leave what compression does, before a picture is saved once more: nothing on average."""
+    places = found.screen.places
+    if not len(places):
         return False
-    difference = theirs[:height, :width].astype(np.float32) - reference[:height, :width]
-    means = difference.reshape(height // BLOCK, BLOCK, width // BLOCK, BLOCK, 3).mean(axis=(1, 3))
-    return bool(np.percentile(np.abs(means).max(axis=2), 90) <= _MEAN)
+    xs, ys = places.T
+    means, _ = mean_errors(student.drawn(places, frozenset(found.causes)), theirs[ys, xs], places)
+    return bool(np.quantile(means, _NEARLY_ALL) <= _MEAN)

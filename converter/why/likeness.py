@@ -1,19 +1,21 @@
-"""When two pixels count as the same, and which pixels can be judged at all."""
+"""When a picture counts as the same: pixel by pixel, or, where it was compressed with losses, square by square.
+
+JPEG changes single pixels by dozens of levels at edges, but keeps the mean of a square that it compresses but for the
+rounding of one number. So in such pictures a square is wrong, with all of its pixels, if its mean is.
+"""
 
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
-from converter.why.picture import Picture
+from converter.why.student import Levels, Places
 
 Mask = NDArray[np.bool_]
 Errors = NDArray[np.int16]
 
-_HALF_BLOCK = 3
-"""Pixels about one that have to be alike for compression with losses to leave it as it was."""
-_FLAT = 8
-"""Levels between them at most: JPEG of ordinary quality adds fewer where nothing happens, and more at edges."""
+SQUARE = 16
+"""Edge of the squares, on whose grid JPEG works: it may keep colours at half the resolution of squares of 8."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -21,25 +23,37 @@ class Likeness:
     """How alike pixels have to be.
 
     Attributes:
-        tolerance: levels of 255 by which a channel may differ: the roundings of two programs, or losses of compression.
-        lossy: the picture was compressed with losses, and only its even parts are judged.
+        tolerance: levels of 255 by which a channel may differ: what roundings or losses of compression do.
+        lossy: the picture was compressed with losses, and means of squares are compared.
+        fewest: pixels that have to be wrong, or made right by a deviation, for it to mean anything.
+        gain: share of the pixels unexplained so far that a deviation has to explain to be believed.
 
     """
 
     tolerance: int
     lossy: bool
+    fewest: int
+    gain: float
 
-    def judged(self, theirs: Picture) -> Mask:
-        """(height, width) pixels that can be judged: all, or those in even parts of a compressed picture."""
-        height, width, _ = theirs.shape
+    def judged(self, width: int, height: int) -> Mask:
+        """(height, width) pixels that can be judged: all, or those in whole squares."""
+        result = np.ones((height, width), np.bool_)
+        if self.lossy:
+            result[height // SQUARE * SQUARE :] = False
+            result[:, width // SQUARE * SQUARE :] = False
+        return result
+
+    def wrong(self, expected: Levels, theirs: Levels, places: Places) -> Mask:
+        """(n,) pixels of `theirs` that are not as `expected`; the places hold whole squares where those count."""
         if not self.lossy:
-            return np.ones((height, width), np.bool_)
-        spread = _around(theirs, np.maximum) - _around(theirs, np.minimum).astype(np.int16)
-        return (spread <= _FLAT).all(axis=2)
+            return errors(expected, theirs) > self.tolerance
+        means, number = mean_errors(expected, theirs, places)
+        result: Mask = (means > self.tolerance)[number]
+        return result
 
 
-EXACT = Likeness(1, False)
-COMPRESSED = Likeness(6, True)
+EXACT = Likeness(1, lossy=False, fewest=6, gain=0.3)
+COMPRESSED = Likeness(4, lossy=True, fewest=4 * SQUARE * SQUARE, gain=0.5)
 
 
 def errors(one: NDArray[np.uint8], other: NDArray[np.uint8]) -> Errors:
@@ -48,16 +62,16 @@ def errors(one: NDArray[np.uint8], other: NDArray[np.uint8]) -> Errors:
     return difference
 
 
-def _around(picture: Picture, reduce: np.ufunc) -> Picture:
-    """Each pixel's least or largest channels with its neighbours."""
-    result = picture
-    for axis in (0, 1):
-        reduced = result.copy()
-        for shift in range(1, _HALF_BLOCK + 1):
-            ahead, behind = [slice(None)] * 3, [slice(None)] * 3
-            ahead[axis], behind[axis] = slice(shift, None), slice(None, -shift)
-            a, b = tuple(ahead), tuple(behind)
-            reduce(reduced[b], result[a], out=reduced[b])
-            reduce(reduced[a], result[b], out=reduced[a])
-        result = reduced
+def mean_errors(expected: Levels, theirs: Levels, places: Places) -> tuple[NDArray[np.float64], NDArray[np.int64]]:
+    """(m,) how far the mean of each square is off in its worst channel, and (n,) the number of each pixel's square."""
+    _, number, counts = np.unique(square_of(places), return_inverse=True, return_counts=True)
+    difference = theirs.astype(np.float64) - expected
+    sums = np.stack([np.bincount(number, channel, len(counts)) for channel in difference.T], axis=1)
+    return np.abs(sums / counts[:, np.newaxis]).max(axis=1), number
+
+
+def square_of(places: Places) -> NDArray[np.int64]:
+    """(n,) numbers of the squares in which pixels lie."""
+    xs, ys = places.T.astype(np.int64) // SQUARE
+    result: NDArray[np.int64] = ys * (1 << 20) + xs
     return result

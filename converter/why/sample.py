@@ -37,10 +37,11 @@ class Sample:
 
     def with_others(self, other: "Sample") -> "Sample":
         """Both, one behind the other."""
-        pairs = zip(
-            (self.places, self.theirs, self.differs), (other.places, other.theirs, other.differs), strict=True
+        return Sample(
+            np.concatenate((self.places, other.places)),
+            np.concatenate((self.theirs, other.theirs)),
+            np.concatenate((self.differs, other.differs)),
         )
-        return Sample(*(np.concatenate(pair) for pair in pairs))
 
 
 def choose(theirs: Picture, differs: Mask, same: Mask, seed: int = 0) -> Sample:
@@ -59,9 +60,7 @@ def choose(theirs: Picture, differs: Mask, same: Mask, seed: int = 0) -> Sample:
     kinds = np.arange(len(one) + len(other)) < len(one)
     # Those that differ come as often as those that do not among the first of them, too.
     order = np.argsort(np.concatenate((_spread(len(one)), _spread(len(other)))), kind="stable")
-    return Sample(
-        np.stack((xs, ys), axis=1).astype(np.int32)[order], theirs[ys, xs][order], kinds[order]
-    )
+    return Sample(np.stack((xs, ys), axis=1).astype(np.int32)[order], theirs[ys, xs][order], kinds[order])
 
 
 def _some(mask: Mask, most: int, random: np.random.Generator) -> NDArray[np.int64]:

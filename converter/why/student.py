@@ -12,7 +12,19 @@ from numpy.typing import NDArray
 from converter.renderers.base import RendererUnavailable
 from converter.renderers.native import available_cores
 from converter.scene.coplanar import with_planes_shared
-from converter.scene.model import Camera, Checker, Finish, Light, Object, Pigment, Polyhedron, Scene, Solid, Sphere, Texmap
+from converter.scene.model import (
+    Camera,
+    Checker,
+    Finish,
+    Light,
+    Object,
+    Pigment,
+    Polyhedron,
+    Scene,
+    Solid,
+    Sphere,
+    Texmap,
+)
 from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings
 from converter.why.first_light import first_light
@@ -26,8 +38,8 @@ Levels = NDArray[np.uint8]
 Causes = frozenset[str]
 """Deviations that a tracer has at once, by name."""
 
-LEVELS, PICTURE = "levels", "picture"
-"""Parts of a tracer, see `Deviation.part`."""
+LEVELS = "levels"
+"""A part of a tracer, see `Deviation.part`."""
 
 _KNOWN = {
     Camera: {"eye", "look_at", "up", "fovy"},
@@ -112,6 +124,11 @@ class Student:
         """(n, 3) bytes of those colours."""
         return to_levels(colors, self.base | causes)
 
+    def drawn(self, places: Places, causes: Causes) -> Levels:
+        """(n, 3) levels of pixels with these causes."""
+        after = after_tracing(causes)
+        return self.levels(self.colors(places, [causes - after])[0], after)
+
     def trace_pixel(self, x: int, y: int, causes: Causes) -> dict[str, Any]:
         """The rays of a pixel, as `NativeRenderer.trace_pixel` has them (a radiance is left out)."""
         result: dict[str, Any] = _module().trace_pixel(
@@ -124,6 +141,11 @@ def to_levels(colors: Colors, causes: Collection[str] = ()) -> Levels:
     """(n, 3) bytes of (n, 3) colours, where `causes` change how they are made."""
     result: Levels = _module().levels(np.ascontiguousarray(colors, np.float32), _indices(causes))
     return result
+
+
+def after_tracing(causes: Causes) -> Causes:
+    """Those that change what becomes of colours, and no colour."""
+    return frozenset(name for name in causes if deviations()[name].part == LEVELS)
 
 
 def make_student(scene: Scene, settings: Settings) -> Student:
@@ -161,7 +183,11 @@ def make_student(scene: Scene, settings: Settings) -> Student:
         else:
             assert isinstance(o.shape, Polyhedron)
             student.add_polyhedron(pigments[o.pigment], o.finish, list(o.shape.planes), bounded)
-    base = {name for name, asked in (("pixel_center", settings.pixel == "center"), ("blinn", settings.specular == "blinn")) if asked}
+    base = {
+        name
+        for name, asked in (("pixel_center", settings.pixel == "center"), ("blinn", settings.specular == "blinn"))
+        if asked
+    }
     return Student(settings.width, settings.height, frozenset(base), settings.threads or available_cores(), student)
 
 
@@ -213,7 +239,9 @@ def _check_known(scene: Scene, settings: Settings) -> None:
             )
     for i, pigment in enumerate(scene.pigments):
         if not isinstance(pigment, Solid | Checker | Texmap):
-            raise UnknownToStudent(f"mistakes are not looked for in pigments such as number {i}, a {type(pigment).__name__.lower()}")
+            raise UnknownToStudent(
+                f"mistakes are not looked for in pigments such as number {i}, a {type(pigment).__name__.lower()}"
+            )
 
 
 def _additions(part: Any) -> list[str]:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from converter.why.likeness import Errors, Likeness, errors
 from converter.why.sample import Sample
-from converter.why.student import LEVELS, Causes, Student, deviations
+from converter.why.student import Causes, Student, after_tracing, deviations
 
 Losses = NDArray[np.float64]
 
@@ -21,7 +21,8 @@ _KEPT = (0.1, 24, 10)
 _FAR = 64
 """Levels from which on a pixel is as wrong as can be."""
 _NEAR_LOSS = 0.2
-"""How much it counts how wrong wrong pixels are: it shows a way where no set is right yet."""
+"""How much it counts how wrong wrong pixels are: it shows a way where no set is right yet. After compression with
+losses, which leaves no pixel right, nothing else counts."""
 _MOST_AT_ONCE = 1 << 20
 """Pixels that are traced in one go: so many colours take 12 MiB."""
 
@@ -54,7 +55,7 @@ class Trials:
         traced: dict[Causes, int] = {}
         by_levels: dict[Causes, list[tuple[int, int]]] = defaultdict(list)
         for i, causes in enumerate(sets):
-            after = _after_tracing(causes)
+            after = after_tracing(causes)
             by_levels[after].append((i, traced.setdefault(causes - after, len(traced))))
         started = time.perf_counter()
         colors = self.student.colors(sample.places, list(traced))
@@ -74,7 +75,8 @@ class Trials:
 
     def losses_of(self, wrong: Errors, sample: Sample) -> Losses:
         """The same, of (sets, n) errors: the mean over pixels that differ, and over those that do not."""
-        pixel = (wrong > self.likeness.tolerance) * (1 - _NEAR_LOSS) + np.minimum(wrong, _FAR) * (_NEAR_LOSS / _FAR)
+        near = 1.0 if self.likeness.lossy else _NEAR_LOSS
+        pixel = (wrong > self.likeness.tolerance) * (1 - near) + np.minimum(wrong, _FAR) * (near / _FAR)
         result = np.zeros(len(wrong))
         for kind in (sample.differs, ~sample.differs):
             if kind.any():
@@ -90,11 +92,9 @@ class Trials:
                 losses = self.losses(sample.first(count), sets)
                 sets = [sets[i] for i in np.argsort(losses, kind="stable")[:kept]]
         losses = self.losses(sample, sets)
-        return sorted(zip(losses.tolist(), sets, strict=True), key=lambda pair: (pair[0], len(pair[1]), sorted(pair[1])))
-
-
-def _after_tracing(causes: Causes) -> Causes:
-    return frozenset(name for name in causes if deviations()[name].part == LEVELS)
+        return sorted(
+            zip(losses.tolist(), sets, strict=True), key=lambda pair: (pair[0], len(pair[1]), sorted(pair[1]))
+        )
 
 
 def compatible(causes: Iterable[str]) -> bool:

@@ -18,18 +18,18 @@ Triple triple(Vector<Real> v) {
 }
 
 struct LightRecord {
-    std::size_t light;
+    int light;  // of the file's lamps; -1: the ambient light, where it is counted as one
     double cosine, attenuation;
     int blocker;
     Triple diffuse, specular;
 };
 
 struct RayRecord {
-    int parent;  // -1: the primary ray
-    Kind kind;
-    int depth;
-    double weight;
-    Triple origin, direction;
+    int parent = -1;  // -1: the primary ray
+    Kind kind = Kind::primary;
+    int depth = 0;
+    double weight = 1;
+    Triple origin{}, direction{};
     int object = -1, plane = -1;  // -1: nothing is hit, a sphere
     double t = 0;
     bool inside = false, total_reflection = false;
@@ -44,8 +44,13 @@ struct Record {
 
     template <typename Real>
     int add(int parent, Kind kind, int depth, double weight, const Ray<Real>& ray) {
-        RayRecord record{parent, kind, depth, weight, triple(ray.origin), triple(ray.direction)};
-        rays.push_back(record);
+        RayRecord& record = rays.emplace_back();
+        record.parent = parent;
+        record.kind = kind;
+        record.depth = depth;
+        record.weight = weight;
+        record.origin = triple(ray.origin);
+        record.direction = triple(ray.direction);
         return static_cast<int>(rays.size()) - 1;
     }
 
@@ -63,7 +68,7 @@ struct Record {
     }
 
     template <typename Real>
-    void light(int index, std::size_t light, double cosine, double attenuation, int blocker, Color<Real> diffuse,
+    void light(int index, int light, double cosine, double attenuation, int blocker, Color<Real> diffuse,
                Color<Real> specular) {
         rays[std::size_t(index)].lights.push_back(
             {light, cosine, attenuation, blocker, triple(diffuse), triple(specular)});

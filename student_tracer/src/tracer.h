@@ -267,7 +267,7 @@ class Tracer {
             specular = sum - diffuse;
         }
         if (record) {
-            record->light(index, i, double(cosine), double(attenuation), blocker, diffuse, specular);
+            record->light(index, number_of(i), double(cosine), double(attenuation), blocker, diffuse, specular);
         }
         return diffuse + specular;
     }
@@ -405,6 +405,11 @@ class Tracer {
             eta = 1 / finish.ior;
         }
         return static_cast<Real>(inside && !on(On::ior_not_inverted_inside) ? 1 / eta : eta);
+    }
+
+    // Where the file has a lamp, which may begin with the ambient light here.
+    int number_of(std::size_t lamp) const {
+        return static_cast<int>(lamp) - (on(On::ambient_is_lamp) && !scene_.ambient_lamp.empty() ? 1 : 0);
     }
 
     // ---- What the switches make of the scene --------------------------------------------------------------------------

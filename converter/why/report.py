@@ -1,0 +1,121 @@
+"""What is told of a judged picture: a sentence that names the causes, what each explains, and what is left."""
+
+from collections.abc import Sequence
+from typing import Any
+
+from converter.why.judge import Judged
+from converter.why.left import Place
+from converter.why.student import deviations
+
+_FEW_ROUGH = 0.05
+"""Share of a compressed picture that may be wrong with the picture still being right, for all that can be told."""
+
+
+def verdict(judged: Judged) -> str:
+    """The sentence that matters: the causes, or that there are none."""
+    found = judged.found
+    if not len(found.screen.places):
+        return "The picture is too small for its compression with losses to leave anything that can be judged."
+    wrong = float(found.before.mean())
+    if found.causes:
+        told = _joined([deviations()[cause].sentence for cause in found.causes])
+        with_them = {1: "with it", 2: "with both"}.get(len(found.causes), "with all of them")
+        return f"{told[0].upper()}{told[1:]}: {with_them}, {_same(judged, ~found.after)}."
+    if found.likeness.lossy:
+        if wrong <= _FEW_ROUGH:
+            return "The picture is right, as far as its compression with losses lets it be told."
+    elif not found.before.any():
+        return f"The picture is right: {_same(judged, ~found.before)}."
+    elif found.before.sum() < found.likeness.fewest:
+        return f"The picture is right but for single pixels: {_same(judged, ~found.before)}."
+    return f"No mistake that is known explains this picture: {_same(judged, ~found.before)}."
+
+
+def left_sentence(places: Sequence[Place], judged: Judged) -> str:
+    """`Left: 6, at silhouettes.`; empty where nothing is."""
+    found = judged.found
+    if not places or not found.causes:
+        return ""
+    count = f"{int(found.after.sum()):,}" if found.screen.whole else f"{100 * found.after.mean():.2g} %"
+    by_mechanism: dict[str, float] = {}
+    for place in places:
+        by_mechanism[place.mechanism] = by_mechanism.get(place.mechanism, 0) + place.share
+    most = sorted(by_mechanism.items(), key=lambda item: -item[1])
+    if len(most) == 1:
+        return f"Left: {count}: {most[0][0]}."
+    return f"Left: {count}: " + ", ".join(f"{100 * share:.0f} % {name}" for name, share in most[:3]) + "."
+
+
+def cause_lines(judged: Judged) -> list[str]:
+    """For each cause what the picture is without it, where to look, and what would explain as much."""
+    found, lines = judged.found, []
+    for number, cause in enumerate(found.causes, 1):
+        known = deviations()[cause]
+        lines.append(f"{number}. {known.sentence}")
+        lines.append(f"   explains: {_share(judged, found.without[cause] - int(found.after.sum()))}")
+        lines.append(f"   look at: {known.hint}")
+        lines += [f"   or: {deviations()[other].sentence}" for other in found.alternatives.get(cause, ())]
+    return lines
+
+
+def to_json(judged: Judged, places: Sequence[Place]) -> dict[str, Any]:
+    """All of it as plain data."""
+    found = judged.found
+    return {
+        "picture": str(judged.theirs.file),
+        "width": judged.settings.width,
+        "height": judged.settings.height,
+        "verdict": verdict(judged),
+        "lossy": found.likeness.lossy,
+        "tolerance_levels": found.likeness.tolerance,
+        "pixels": len(found.screen.places),
+        "pixels_are_all": found.screen.whole,
+        "wrong": int(found.before.sum()),
+        "wrong_with_causes": int(found.after.sum()),
+        "causes": [
+            {
+                "name": cause,
+                "part": deviations()[cause].part,
+                "sentence": deviations()[cause].sentence,
+                "hint": deviations()[cause].hint,
+                "wrong_without": found.without[cause],
+                "alternatives": list(found.alternatives.get(cause, ())),
+            }
+            for cause in found.causes
+        ],
+        "left": [
+            {
+                "object": place.object,
+                "finish": place.finish,
+                "mechanism": place.mechanism,
+                "share": place.share,
+                "pixel": list(place.pixel),
+            }
+            for place in places
+        ],
+    }
+
+
+def _same(judged: Judged, same: Any) -> str:
+    found = judged.found
+    if found.likeness.lossy:
+        return f"{100 * same.mean():.1f} % of the picture is the same but for its compression"
+    if found.screen.whole:
+        return f"{int(same.sum()):,} of {len(same):,} pixels are the same"
+    return f"{100 * same.mean():.3g} % of the pixels are the same, by {len(same):,} of them"
+
+
+def _share(judged: Judged, count: int) -> str:
+    found = judged.found
+    if count <= 0:
+        return "the levels of colours, by one"
+    percent = f"{100 * count / max(len(found.screen.places), 1):.2g} %"
+    if found.likeness.lossy or not found.screen.whole:
+        return f"{percent} of the picture"
+    return f"{count:,} pixels, {percent} of the picture"
+
+
+def _joined(parts: Sequence[str]) -> str:
+    if len(parts) < 2:
+        return parts[0]
+    return f"{', '.join(parts[:-1])}, and {parts[-1]}"
