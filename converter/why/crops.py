@@ -8,6 +8,7 @@ from converter.compare.figure import GAP, GROUND, Panel, side_by_side
 from converter.compare.metrics import Pixels
 from converter.why.judge import Judged
 from converter.why.left import Place
+from converter.why.likeness import errors
 from converter.why.picture import Picture
 
 EDGE = 40
@@ -44,11 +45,10 @@ def _row(judged: Judged, told: str, left: int, top: int, width: int, height: int
     panels = [Panel(f"theirs{told}", _colors(theirs)), Panel("the right picture", _colors(judged.reference[part]))]
     if judged.found.causes:
         panels.insert(1, Panel("with the mistakes named", _colors(drawn)))
-    wrong = np.abs(theirs.astype(np.int16) - drawn).max(axis=2) > judged.found.likeness.tolerance
-    panels.append(Panel("pixels left", np.repeat(wrong[:, :, np.newaxis], 3, axis=2).astype(np.float32)))
+    wrong = errors(drawn, theirs) > judged.found.likeness.tolerance
+    panels.append(Panel("pixels left", _colors(np.repeat(wrong[:, :, np.newaxis], 3, axis=2).astype(np.uint8) * 255)))
     return side_by_side(tuple(panels))
 
 
 def _colors(levels: Picture) -> Pixels:
-    result: Pixels = levels.astype(np.float32) / 255
-    return result
+    return np.divide(levels, 255, dtype=np.float32)

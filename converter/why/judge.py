@@ -12,9 +12,10 @@ from converter.why.picture import Picture, Theirs
 from converter.why.search import Found, find_causes
 from converter.why.student import Student, make_student, to_levels
 
-_MEAN = 1.5
+_MEAN, _NEARLY_ALL = 2.5, 0.9
 """Levels by which the means of nearly all squares may differ for losses of compression to be all there is."""
-_NEARLY_ALL = 0.9
+_BIAS = 0.5
+"""Levels by which the whole picture may."""
 _SHARE = 0.05
 """Share of the pixels that are wrong at least where a picture has been compressed."""
 _EXPLAINED = 0.5
@@ -66,5 +67,7 @@ def _looks_compressed(student: Student, theirs: Picture, found: Found) -> bool:
     if not len(places):
         return False
     xs, ys = places.T
-    means, _ = mean_errors(student.drawn(places, frozenset(found.causes)), theirs[ys, xs], places)
-    return bool(np.quantile(means, _NEARLY_ALL) <= _MEAN)
+    expected = student.drawn(places, frozenset(found.causes))
+    bias = theirs[ys, xs].mean(axis=0) - expected.mean(axis=0)
+    means, _ = mean_errors(expected, theirs[ys, xs], places)
+    return bool(np.abs(bias).max() <= _BIAS and np.quantile(means, _NEARLY_ALL) <= _MEAN)

@@ -24,6 +24,8 @@ MOST_LOOKED_AT = 200
 """Pixels whose rays are looked at."""
 _FITS = 0.3
 """Share of a wrong colour that a term may leave to be what is wrong."""
+_WHOLE = 0.8
+"""Share of a lamp's light that is too much or missing, at least, where a shadow is wrong."""
 _LEVEL = 1 / 255
 _SURELY = 2
 """Levels: a smaller error has no mechanism but where it lies."""
@@ -153,6 +155,8 @@ def _fitting(wrong: NDArray[np.float64], scene: Scene, tree: Ray) -> str | None:
         if size < _LEVEL**2:
             continue
         factor = min(max(float(wrong @ color) / size, -1.0), 1.0)
+        if name.startswith("shadow") and abs(factor) < _WHOLE:
+            continue  # a lamp is seen or not
         left = float(np.abs(wrong - factor * color).max() / np.abs(wrong).max())
         unlikely = left + 0.2 * (1 - abs(factor))  # a whole term is likelier than a part of it
         if left <= _FITS and (best is None or unlikely < best[0]):

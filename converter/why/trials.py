@@ -23,6 +23,8 @@ _FAR = 64
 _NEAR_LOSS = 0.2
 """How much it counts how wrong wrong pixels are: it shows a way where no set is right yet. After compression with
 losses, which leaves no pixel right, nothing else counts."""
+_TIMED = 500
+"""Pixels of which the time is worth anything."""
 _MOST_AT_ONCE = 1 << 20
 """Pixels that are traced in one go: so many colours take 12 MiB."""
 
@@ -60,7 +62,7 @@ class Trials:
         started = time.perf_counter()
         colors = self.student.colors(sample.places, list(traced))
         count = len(traced) * len(sample)
-        if count >= 2000:
+        if count >= _TIMED:
             self.pixel_seconds = (time.perf_counter() - started) / count
         result = np.empty((len(sets), len(sample)), np.int16)
         for after, pairs in by_levels.items():
