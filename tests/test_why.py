@@ -79,6 +79,29 @@ def test_planted_mistakes_are_named(scene, causes):
     assert f"{WIDTH * HEIGHT:,} of {WIDTH * HEIGHT:,} pixels are the same" in verdict(judged)
 
 
+@pytest.mark.parametrize("others", [[], ["bgr", "pixel_center"]], ids=str)
+def test_acne_is_told_though_its_speckles_are_never_the_same(others):
+    """An eye that lies a trifle off has others, which no tracer can reproduce."""
+    scene = load("figure1")
+    x, y, z = scene.camera.eye
+    nudged = replace(scene, camera=replace(scene.camera, eye=(x + 1e-7, y + 1e-7, z)))
+    judged = judged_picture(scene, draw(nudged, "epsilon_none", *others))
+    assert set(judged.found.causes) == set(others)
+    assert judged.acne
+    assert not judged.right
+    assert "(acne)" in verdict(judged)
+    assert not judged_picture(scene, draw(scene, "own_side_casts_none", *others)).acne
+
+
+def test_mistakes_beside_the_arithmetic_of_another_program():
+    """The native tracer in single precision shares no code with the one that the mistakes are planted in."""
+    scene = load("room")
+    asked = Settings(WIDTH, HEIGHT, pixel="center", specular="blinn", max_depth=2)
+    colors = np.asarray(NativeRenderer("float").render(scene, asked).pixels)
+    levels = to_levels(colors.reshape(-1, 3)).reshape(colors.shape)
+    assert set(judged_picture(scene, levels).found.causes) == {"pixel_center", "blinn", "depth_2"}
+
+
 @pytest.mark.parametrize("size", [(50, 37), (120, 160), (300, 100)], ids=str)
 def test_pictures_of_any_size(size):
     scene = load("figure1")

@@ -87,7 +87,7 @@ def run(arguments: argparse.Namespace) -> int:
 
         sheet = draw_crops(judged, places)
         write_image(arguments.png, sheet, sheet.shape[1], sheet.shape[0], png_ending)
-    return OK if judged.found.right else DISAGREE
+    return OK if judged.right else DISAGREE
 
 
 def _list() -> None:

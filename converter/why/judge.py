@@ -7,6 +7,7 @@ import numpy as np
 from converter.renderers.native import NativeRenderer
 from converter.scene.model import Scene
 from converter.scene.settings import Settings
+from converter.why.acne import has_acne
 from converter.why.likeness import COMPRESSED, EXACT, mean_errors
 from converter.why.picture import Picture, Theirs
 from converter.why.search import Found, find_causes
@@ -24,7 +25,16 @@ _EXPLAINED = 0.5
 
 @dataclass(frozen=True, slots=True, eq=False)
 class Judged:
-    """A picture, the right one, and what leads from one to the other."""
+    """A picture, the right one, and what leads from one to the other.
+
+    Attributes:
+        scene, settings: what the picture is of; the settings have its size.
+        theirs, reference: the picture, and the right one.
+        student: draws the scene with mistakes.
+        found: the mistakes that lead to the picture.
+        acne: whether the pixels that they leave are speckles of acne, which are never the same in two programs.
+
+    """
 
     scene: Scene
     settings: Settings
@@ -32,6 +42,12 @@ class Judged:
     reference: Picture
     student: Student
     found: Found
+    acne: bool
+
+    @property
+    def right(self) -> bool:
+        """Whether the picture is right, as far as can be told."""
+        return self.found.right and not self.acne
 
 
 def judge(scene: Scene, theirs: Theirs, settings: Settings) -> Judged:
@@ -49,11 +65,12 @@ def judge(scene: Scene, theirs: Theirs, settings: Settings) -> Judged:
     colors = np.asarray(NativeRenderer().render(scene, settings).pixels)
     reference = to_levels(colors.reshape(-1, 3)).reshape(colors.shape)
     found = find_causes(student, theirs.levels, reference, COMPRESSED if theirs.lossy else EXACT)
-    if not theirs.lossy and _unexplained(found) and found.before.mean() >= _SHARE:
+    acne = not theirs.lossy and has_acne(student, theirs.levels, frozenset(found.causes), EXACT)
+    if not theirs.lossy and not acne and _unexplained(found) and found.before.mean() >= _SHARE:
         roughly = find_causes(student, theirs.levels, reference, COMPRESSED)
         if _looks_compressed(student, theirs.levels, roughly):
             found = roughly
-    return Judged(scene, settings, theirs, reference, student, found)
+    return Judged(scene, settings, theirs, reference, student, found, acne)
 
 
 def _unexplained(found: Found) -> bool:
