@@ -22,14 +22,18 @@ _ROUNDING = "rounding"
 """The group of deviations that change a level by one: looked for at the end, where all else is explained."""
 _RIGHT = 0.02
 """Share of the wrong pixels that a set may leave to be right but for some pixels at edges."""
-_SCREEN_SECONDS = 0.6
+_SCREEN_SECONDS = 0.25
 """Time for tracing one set in the whole picture; where it would take longer, a random part of it is traced."""
-_PAIR_SECONDS = 1.0
+_PAIR_SECONDS = 0.5
 """Time for the first round of all pairs."""
 _AS_GOOD = 0.03
 """How much worse, of its loss, a deviation may be that explains as much as another."""
 _ROUNDED, _TELLING, _SURE = 4000, 24, 0.9
 """Pixels that are looked at for roundings; channels that have to tell one; share of them that has to agree."""
+_PAIR_PIXELS = (10, 32)
+"""Pixels, least and most, of that round."""
+_EFFECT = 80
+"""Pixels in one of which a deviation has to change something to be tried in pairs."""
 _MOST_CAUSES = 5
 _FEW = 0.001
 """Share of the pixels that may be wrong in a picture that is right, as for `compare`."""
@@ -125,11 +129,11 @@ class _Search:
         singles = self.trials.race(sample, [NOTHING, *(frozenset((d.name,)) for d in self.candidates)])
         if self._is_right(singles[0][1]):
             return singles[0][1]
-        few = sample.first(160)
+        few = sample.first(_EFFECT)
         alone = self.trials.errors(few, [NOTHING, *(frozenset((d.name,)) for d in self.candidates)])
         effective = [d.name for d, wrong in zip(self.candidates, alone[1:], strict=True) if (wrong != alone[0]).any()]
         pairs = [frozenset(pair) for pair in combinations(effective, 2) if compatible(pair)]
-        first = int(np.clip(_PAIR_SECONDS / self.trials.pixel_seconds / max(len(pairs), 1), 16, 48))
+        first = int(np.clip(_PAIR_SECONDS / self.trials.pixel_seconds / max(len(pairs), 1), *_PAIR_PIXELS))
         best_pairs = self.trials.race(sample, pairs, first) if pairs else []
         best = min(singles[0], *best_pairs[:1], key=lambda pair: pair[0] + 0.01 * len(pair[1]))
         if self._is_right(best[1]):
@@ -137,7 +141,7 @@ class _Search:
         seeds = [causes for _, causes in (*best_pairs[:_BEAM], *singles[:3]) if causes]
         triples = {seed | {d.name} for seed in seeds for d in self.candidates if d.name not in seed}
         ordered = sorted((t for t in triples if compatible(t)), key=sorted)
-        best_triples = self.trials.race(sample, ordered, 32) if ordered else []
+        best_triples = self.trials.race(sample, ordered, _PAIR_PIXELS[1]) if ordered else []
         return min(best, *best_triples[:1], key=lambda pair: pair[0] + 0.01 * len(pair[1]))[1]
 
     # ---- Among the pixels that are left -----------------------------------------------------------------------------

@@ -14,10 +14,9 @@ from converter.why.student import Causes, Student, after_tracing, deviations
 
 Losses = NDArray[np.float64]
 
-_STAGES = (40, 160)
-"""Pixels on which the first rounds of a race are run; the last one is run on all."""
-_KEPT = (0.1, 24, 10)
-"""Share, and least number, of sets that pass the first round; number of those that pass the second."""
+_ROUNDS = ((32, 0.1, 20), (64, 0.1, 12), (200, 0.1, 6))
+"""Rounds of a race: the pixels that are looked at, and the share and the least number of sets that pass. A last one is
+run on all pixels."""
 _FAR = 64
 """Levels from which on a pixel is as wrong as can be."""
 _NEAR_LOSS = 0.2
@@ -85,11 +84,10 @@ class Trials:
                 result += pixel[:, kind].mean(axis=1)
         return result
 
-    def race(self, sample: Sample, sets: Sequence[Causes], first: int = _STAGES[0]) -> list[tuple[float, Causes]]:
+    def race(self, sample: Sample, sets: Sequence[Causes], first: int = _ROUNDS[0][0]) -> list[tuple[float, Causes]]:
         """The best sets with their losses, best first; most are given up after a few pixels, `first` of them."""
-        share, least, last = _KEPT
-        rounds = ((first, max(least, int(share * len(sets)))), (_STAGES[1], last))
-        for count, kept in rounds:
+        for count, share, least in ((first, *_ROUNDS[0][1:]), *_ROUNDS[1:]):
+            kept = max(least, int(share * len(sets)))
             if len(sets) > kept and len(sample) > count:
                 losses = self.losses(sample.first(count), sets)
                 sets = [sets[i] for i in np.argsort(losses, kind="stable")[:kept]]
