@@ -45,6 +45,7 @@ figures: .venv/.installed
 	$(BIN)/python benchmarks/growth.py
 	$(BIN)/python benchmarks/planes.py
 	$(BIN)/python benchmarks/refused.py
+	$(BIN)/python benchmarks/why.py
 	mkdir -p docs
 	$(BIN)/whitted chart scenes/figure1.in -o docs/figure1.png
 

@@ -4,10 +4,11 @@
     python benchmarks/why.py --count 40 --seed 7 --size 400 300
 
 A mistake is planted by the student's tracer, in a scene and a picture of a random size; it has to change at least one
-pixel in 2000, and each of a pair beside the other. What is named is right if it is what was planted: the same number of
-causes, each of them planted, or told to explain as much as the one that was. Right pictures are drawn by the native
-tracer, in double and in single precision, and saved without losses or as JPEG of several qualities. Status 1: fewer
-are right than 95 % of the single mistakes and 85 % of the pairs, or a cause is named for a right picture.
+pixel in 2000, each of a pair beside the other, and to leave something in the picture. What is named is right if it is
+what was planted: the same number of causes, each of them planted, or told to explain as much as the one that was. Right
+pictures are drawn by the native tracer, in double and in single precision, and saved without losses or as JPEG of
+several qualities. Status 1: fewer are right than 95 % of the single mistakes and 85 % of the pairs, or a cause is named
+for a right picture.
 """
 
 import argparse
@@ -90,6 +91,8 @@ def plant(mistakes: int, rng: random.Random, size: list[int] | None) -> tuple[Pa
         if not compatible(causes):
             continue
         picture = drawn(student, causes)
+        if (picture == picture[:, :1]).all(axis=(1, 2)).all():  # nothing is drawn: there is nothing to explain
+            continue
         least = width * height / VISIBLE
         if all(changed(picture, drawn(student, causes - {name}), name) >= least for name in causes):
             return file, scene, settings, causes, picture

@@ -8,7 +8,8 @@ from converter.renderers.native import NativeRenderer
 from converter.scene.model import Scene
 from converter.scene.settings import Settings
 from converter.why.acne import has_acne
-from converter.why.likeness import COMPRESSED, EXACT, mean_errors
+from converter.why.blank import blank_rows
+from converter.why.likeness import COMPRESSED, EXACT, Mask, errors, mean_errors
 from converter.why.picture import Picture, Theirs
 from converter.why.search import Found, find_causes
 from converter.why.student import Student, make_student, to_levels
@@ -19,6 +20,8 @@ _BIAS = 0.5
 """Levels by which the whole picture may."""
 _SHARE = 0.05
 """Share of the pixels that are wrong at least where a picture has been compressed."""
+_ROW_PIXELS = 1000
+"""Pixels of rows without a drawing that are looked at."""
 _EXPLAINED = 0.5
 """Share of the wrong pixels below which causes do not count as found."""
 
@@ -32,6 +35,7 @@ class Judged:
         theirs, reference: the picture, and the right one.
         student: draws the scene with mistakes.
         found: the mistakes that lead to the picture.
+        blank: (height,) rows in which nothing was drawn, which are not judged.
         acne: whether the pixels that they leave are speckles of acne, which are never the same in two programs.
 
     """
@@ -42,12 +46,13 @@ class Judged:
     reference: Picture
     student: Student
     found: Found
+    blank: Mask
     acne: bool
 
     @property
     def right(self) -> bool:
         """Whether the picture is right, as far as can be told."""
-        return self.found.right and not self.acne
+        return self.found.right and not self.acne and not self.blank.any()
 
 
 def judge(scene: Scene, theirs: Theirs, settings: Settings) -> Judged:
@@ -64,13 +69,29 @@ def judge(scene: Scene, theirs: Theirs, settings: Settings) -> Judged:
     student = make_student(scene, settings)
     colors = np.asarray(NativeRenderer().render(scene, settings).pixels)
     reference = to_levels(colors.reshape(-1, 3)).reshape(colors.shape)
-    found = find_causes(student, theirs.levels, reference, COMPRESSED if theirs.lossy else EXACT)
-    acne = not theirs.lossy and has_acne(student, theirs.levels, frozenset(found.causes), EXACT)
-    if not theirs.lossy and not acne and _unexplained(found) and found.before.mean() >= _SHARE:
-        roughly = find_causes(student, theirs.levels, reference, COMPRESSED)
+    blank = blank_rows(theirs.levels, reference)
+    if theirs.lossy:
+        found = find_causes(student, theirs.levels, reference, COMPRESSED, blank)
+        return Judged(scene, settings, theirs, reference, student, found, blank, acne=False)
+    found = find_causes(student, theirs.levels, reference, EXACT, blank)
+    if blank.any() and found.causes and _draws_rows(student, theirs.levels, found, blank):
+        blank = np.zeros_like(blank)
+        found = find_causes(student, theirs.levels, reference, EXACT, blank)
+    acne = not blank.any() and has_acne(student, theirs.levels, frozenset(found.causes), EXACT)
+    if not acne and _unexplained(found) and found.before.mean() >= _SHARE:
+        roughly = find_causes(student, theirs.levels, reference, COMPRESSED, blank)
         if _looks_compressed(student, theirs.levels, roughly):
             found = roughly
-    return Judged(scene, settings, theirs, reference, student, found, acne)
+    return Judged(scene, settings, theirs, reference, student, found, blank, acne)
+
+
+def _draws_rows(student: Student, theirs: Picture, found: Found, rows: Mask) -> bool:
+    """Whether the causes explain rows that look as if nothing had been drawn."""
+    ys, xs = np.nonzero(np.repeat(rows[:, np.newaxis], student.width, axis=1))
+    chosen = np.random.default_rng(5).permutation(len(xs))[:_ROW_PIXELS]
+    places = np.stack((xs, ys), axis=1).astype(np.int32)[chosen]
+    drawn = student.drawn(places, frozenset(found.causes))
+    return bool((errors(drawn, theirs[ys, xs][chosen]) <= EXACT.tolerance).mean() >= _NEARLY_ALL)
 
 
 def _unexplained(found: Found) -> bool:

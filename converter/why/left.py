@@ -180,7 +180,8 @@ def _terms(scene: Scene, tree: Ray) -> Iterator[Term]:
         for light in hit["lights"]:
             lamp = f"light {light['light'] + 1}"  # the file's first is the ambient light
             diffuse, specular = (np.array(light[kind]) for kind in ("diffuse", "specular"))
-            if light["shadowed_by"] is not None and light["light"] >= 0 and light["cosine"] > 0:
+            lit = light["light"] >= 0 and light["cosine"] > 0 and light["attenuation"] != 0
+            if light["shadowed_by"] is not None and lit:
                 intensity = np.array(scene.lights[light["light"]].color) / light["attenuation"]
                 yield f"shadow of {lamp}{at}", weight * finish.kd * light["cosine"] * pigment * intensity
             elif diffuse.any():

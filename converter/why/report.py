@@ -5,6 +5,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from converter.why.acne import ACNE
+from converter.why.blank import told_rows
 from converter.why.judge import Judged
 from converter.why.left import Place
 from converter.why.student import deviations
@@ -15,6 +16,10 @@ _FEW_ROUGH = 0.05
 
 def verdict(judged: Judged) -> str:
     """The sentence that matters: the causes, or that there are none."""
+    if judged.blank.all():
+        return "The picture is blank: no row of it shows anything."
+    if judged.blank.any():
+        return f"{_causes(judged)} Nothing was drawn in {told_rows(judged.blank)}, which are left out."
     if not judged.acne:
         return _causes(judged)
     sentence = deviations()[ACNE].sentence
@@ -98,6 +103,7 @@ def to_json(judged: Judged, places: Sequence[Place]) -> dict[str, Any]:
             }
             for cause in found.causes
         ],
+        "blank_rows": int(judged.blank.sum()),
         "acne": judged.acne,
         "left": [
             {

@@ -10,7 +10,7 @@ from itertools import combinations
 
 import numpy as np
 
-from converter.why.likeness import Likeness, Mask, errors, square_of
+from converter.why.likeness import SQUARE, Likeness, Mask, errors, square_of
 from converter.why.picture import Picture
 from converter.why.sample import Sample, choose
 from converter.why.student import Causes, Deviation, Places, Student, after_tracing, deviations
@@ -35,8 +35,8 @@ _PAIR_PIXELS = (10, 32)
 _EFFECT = 80
 """Pixels in one of which a deviation has to change something to be tried in pairs."""
 _MOST_CAUSES = 5
-_FEW = 0.001
-"""Share of the pixels that may be wrong in a picture that is right, as for `compare`."""
+_FEW, _FEW_OF_SMALL = 0.001, 0.05
+"""Share of the pixels that may be wrong in a picture that is right, as for `compare`; and in a small one."""
 _BEAM = 8
 """Pairs of which triples are made."""
 
@@ -80,11 +80,13 @@ class Found:
     @property
     def right(self) -> bool:
         """Whether the picture is right as it is, as far as can be told."""
-        few = max(self.likeness.fewest - 1, _FEW * len(self.before))
+        few = max(min(self.likeness.fewest - 1, _FEW_OF_SMALL * len(self.before)), _FEW * len(self.before))
         return not self.causes and bool(self.before.sum() <= few)
 
 
-def find_causes(student: Student, theirs: Picture, reference: Picture, likeness: Likeness) -> Found:
+def find_causes(
+    student: Student, theirs: Picture, reference: Picture, likeness: Likeness, blank: Mask | None = None
+) -> Found:
     """The deviations that lead from the scene to `theirs`, as far as they can be found.
 
     Args:
@@ -92,16 +94,27 @@ def find_causes(student: Student, theirs: Picture, reference: Picture, likeness:
         theirs: the picture.
         reference: the right one, of the same size.
         likeness: when pixels count as the same.
+        blank: (height,) rows that are not looked at.
 
     """
-    return _Search(student, theirs, reference, likeness).run()
+    judged = likeness.judged(student.width, student.height)
+    if blank is not None:
+        judged[_with_whole_squares(blank) if likeness.lossy else blank] = False
+    return _Search(student, theirs, reference, likeness, judged).run()
+
+
+def _with_whole_squares(rows: Mask) -> Mask:
+    """The rows, and those that share squares with them."""
+    squares = np.flatnonzero(rows) // SQUARE
+    result: Mask = np.isin(np.arange(len(rows)) // SQUARE, squares)
+    return result
 
 
 class _Search:
-    def __init__(self, student: Student, theirs: Picture, reference: Picture, likeness: Likeness) -> None:
+    def __init__(self, student: Student, theirs: Picture, reference: Picture, likeness: Likeness, judged: Mask) -> None:
         self.student, self.theirs, self.likeness = student, theirs, likeness
         self.trials = Trials(student, likeness)
-        self.judged = likeness.judged(student.width, student.height)
+        self.judged = judged
         places = _places(self.judged)
         xs, ys = places.T
         self.wrong = np.zeros_like(self.judged)
