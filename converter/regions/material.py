@@ -78,8 +78,9 @@ def _plane_mirrors(s: Situation, limit: float) -> Iterator[Finding]:
         return
     shiny = [i for i in range(len(s.scene.objects)) if _shiny(s, i, bounces)]
     flat = [i for i in shiny if isinstance(s.scene.objects[i].shape, Polyhedron)]
-    # A ray that leaves the outside of a lone mirror never comes back to it.
-    if flat and (len(shiny) > 1 or s.finish(flat[0]).kt > 0 or _encloses(s, flat[0])):
+    # A ray that leaves the outside of a lone mirror never comes back to it, nor one that crosses a plate.
+    within = flat and s.finish(flat[0]).kt > 0 and not s.needs.plates[flat[0]]
+    if flat and (len(shiny) > 1 or within or _encloses(s, flat[0])):
         text = f"object {flat[0]} is a mirror that is followed for {s.needs.max_depth} bounces"
         yield Finding(s.scene.objects[flat[0]].line, f"{text} (more than {bounces:.0f})")
 
