@@ -15,8 +15,8 @@ HEIGHT ?= 600
 SECONDS ?= 60
 
 BIN := .venv/bin
-SOURCES := pyproject.toml CMakeLists.txt $(wildcard native_tracer/src/*)
-CPP := $(wildcard native_tracer/src/*.cpp native_tracer/src/*.h)
+SOURCES := pyproject.toml CMakeLists.txt $(wildcard native_tracer/src/* student_tracer/src/*)
+CPP := $(wildcard native_tracer/src/*.cpp native_tracer/src/*.h student_tracer/src/*.cpp student_tracer/src/*.h)
 
 .PHONY: render test check figures stability fuzz clean
 .DELETE_ON_ERROR:
@@ -45,6 +45,7 @@ figures: .venv/.installed
 	$(BIN)/python benchmarks/growth.py
 	$(BIN)/python benchmarks/planes.py
 	$(BIN)/python benchmarks/refused.py
+	$(BIN)/python benchmarks/why.py
 	mkdir -p docs
 	$(BIN)/whitted chart scenes/figure1.in -o docs/figure1.png
 

@@ -120,3 +120,11 @@ def test_causes_of_disagreement(scene, whitted):
 def test_chart(scene, whitted, tmp_path):
     whitted("chart", scene, "-o", "chart.svg", "--methods", "native,native-float", "--size", "16x12", "--runs", "2")
     assert (tmp_path / "chart.svg").stat().st_size > 1000
+
+
+@pytest.mark.parametrize("scene", KINDS, indirect=True)
+def test_why(scene, whitted, capsys):
+    """The student's tracer draws what the statement has, and says so where there is more."""
+    whitted("render", scene, "picture.png", *SIZE, "--method", "native")
+    status = main.main(["why", scene, "picture.png"])
+    assert status == 0 or (status == 2 and "mistakes are " in capsys.readouterr().err)

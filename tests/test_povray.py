@@ -37,10 +37,11 @@ def textured(small_scene: Scene, tmp_path: Path) -> Scene:
 
 def test_numbers_keep_all_their_digits(small_scene: Scene) -> None:
     text = povray_scene(small_scene, Settings()).text
-    factor = suitable_scale(small_scene, scene_needs(small_scene, Settings()))
+    needs = scene_needs(small_scene, Settings())
+    factor = suitable_scale(small_scene, needs)
     assert f"sphere {{ <{-1.6 * factor!r}, {1.1 * factor!r}, {0.6 * factor!r}>, {1.1 * factor!r}" in text
     assert "ambient_light rgb <0.7, 0.8, 1>" in text and "background { rgb <0.7, 0.8, 1> }" in text
-    assert "max_trace_level 17\n  adc_bailout 0.001953125" in text
+    assert f"max_trace_level {needs.max_depth + 1}\n  adc_bailout 0.001953125" in text
 
 
 def test_only_what_is_seen(small_scene: Scene) -> None:

@@ -19,8 +19,6 @@ from converter.scene.settings import Settings
 from converter.studies.exact.tracer import ExactTracer, exact_picture
 from converter.studies.families import ties
 
-pytestmark = pytest.mark.skip(reason="ties are decided by rounding: the bounds of rounding.h are switched off")
-
 ROOT = Path(__file__).resolve().parent.parent
 SCRIPT = ROOT / "scenes" / "round_numbers.py"
 EXACT = ("native", "native-long-double", "native-bvh", "mitsuba-analytic", "mitsuba-bvh")

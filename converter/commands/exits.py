@@ -21,6 +21,7 @@ BROKEN_PIPE = 141
 _UNUSABLE = (
     ("converter.images.texture", "TextureError"),
     ("converter.compare.metrics", "SizeMismatch"),
+    ("converter.why.student", "UnknownToStudent"),
     ("converter.errors", "ExportError"),
     ("converter.to_mitsuba.meshes", "PolyhedronError"),
     ("converter.renderers.povray", "PovrayError"),

@@ -8,8 +8,9 @@ from dataclasses import fields
 from typing import NoReturn
 
 from converter.commands.exits import UsageError
+from converter.scene.depth import MAX_DEPTH
 from converter.scene.model import Color
-from converter.scene.settings import DEEPEST, MOST_THREADS, Settings
+from converter.scene.settings import MOST_THREADS, Settings
 
 MAX_SIZE = 65535
 MAX_SAMPLES = 65536
@@ -107,7 +108,7 @@ def _samples(text: str) -> int:
 
 
 def _depth(text: str) -> int:
-    return whole(text, 0, DEEPEST)
+    return whole(text, 0, MAX_DEPTH)
 
 
 def _seed(text: str) -> int:
@@ -164,7 +165,7 @@ def _add_bounce_options(group: argparse._ArgumentGroup) -> None:
         "--max-depth",
         type=_depth,
         metavar="N",
-        help="follow a ray for at most N bounces (as many as the scene needs for --cutoff to act)",
+        help="follow a ray for at most N bounces (as many as --cutoff asks for, within the limits that inspect tells)",
     )
 
 

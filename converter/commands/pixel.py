@@ -23,16 +23,23 @@ def parser() -> Parser:
     """The command's arguments."""
     result = Parser(
         "whitted pixel",
-        "SCENE X Y [WIDTH HEIGHT] [options]",
+        "SCENE X Y [WIDTH HEIGHT] [options]\nSCENE X Y --picture PICTURE [options]",
         "Lists the rays behind a pixel by two methods: what each hits, which lights reach it, what follows it.\n"
         "Where they differ there is a line for each; > marks the first difference, told in full at the end.",
-        "whitted pixel figure1.in 400 300\n  whitted pixel figure1.in 400 300 --method native",
+        "whitted pixel figure1.in 400 300\n  whitted pixel figure1.in 400 300 --method native\n"
+        "  whitted pixel figure1.in 400 300 --picture mine.ppm",
     )
     result.add_argument("scene", type=Path, metavar="SCENE", help="the scene file")
     result.add_argument("x", type=position, metavar="X", help="the pixel's column, 0 is the leftmost")
     result.add_argument("y", type=position, metavar="Y", help="the pixel's row, 0 is the top one")
     add_size(result)
     group = result.add_argument_group("what is told")
+    group.add_argument(
+        "--picture",
+        type=Path,
+        metavar="FILE",
+        help="a picture of yours: beside the right rays those that lead to it, with the mistakes that `why` names",
+    )
     group.add_argument(
         "--json",
         action=TextResult,
@@ -47,6 +54,8 @@ def parser() -> Parser:
 
 def run(arguments: argparse.Namespace) -> int:
     """Trace the pixel, and tell."""
+    if arguments.picture is not None:
+        return _run_with_picture(arguments)
     settings = settings_from(arguments)
     x, y = arguments.x, arguments.y
     if x >= settings.width or y >= settings.height:
@@ -73,6 +82,50 @@ def run(arguments: argparse.Namespace) -> int:
         print(f"{arguments.scene} at {settings.width} x {settings.height}, pixel ({x}, {y}): {' | '.join(traced)}\n")
         _list(scene, traced)
     write_json(arguments.json, traced)
+    return OK
+
+
+def _run_with_picture(arguments: argparse.Namespace) -> int:
+    """The pixel in two readings: the right one, and the one that leads to a picture."""
+    import numpy as np
+
+    from converter.commands.json_out import check_json, write_json
+    from converter.commands.notes import load_with_notices
+    from converter.renderers.native import NativeRenderer
+    from converter.why.judge import judge
+    from converter.why.picture import read_theirs
+    from converter.why.report import verdict
+
+    for option in sorted(arguments.given & {"--method", "--reference", "--variant"}):
+        raise UsageError(f"{option} means nothing beside --picture, which is compared with the native tracer")
+    check_json(arguments.json, [arguments.scene, arguments.picture])
+    theirs = read_theirs(arguments.picture)
+    height, width, _ = theirs.levels.shape
+    if arguments.width is not None and (arguments.width, arguments.height) != (width, height):
+        given = f"{arguments.width} x {arguments.height}"
+        raise UsageError(f"{arguments.picture} has {width} x {height} pixels, not {given}")
+    x, y = arguments.x, arguments.y
+    if x >= width or y >= height:
+        raise UsageError(f"pixel ({x}, {y}) lies outside the picture of {width} x {height} pixels")
+    settings = settings_from(arguments)
+    scene = load_with_notices(arguments.scene, settings, arguments.quiet)
+    judged = judge(scene, theirs, settings)
+    causes = frozenset(judged.found.causes)
+    traced = {"native": NativeRenderer().trace_pixel(scene, judged.settings, x, y)}
+    if causes:
+        traced["theirs"] = judged.student.trace_pixel(x, y, causes)
+    if arguments.json != STANDARD_OUTPUT:
+        print(verdict(judged))
+        print(f"{arguments.scene} at {width} x {height}, pixel ({x}, {y}): {' | '.join(traced)}\n")
+        _list(scene, traced)
+        levels = {"the right picture": judged.reference[y, x], str(arguments.picture): theirs.levels[y, x]}
+        if causes:
+            levels["with the mistakes named"] = judged.student.drawn(np.array([[x, y]], np.int32), causes)[0]
+        print()
+        length = max(map(len, levels))
+        for name, row in levels.items():
+            print(f"of 255  {name:{length}}  {' '.join(f'{level:3}' for level in row)}")
+    write_json(arguments.json, {**traced, "picture": theirs.levels[y, x].tolist(), "causes": sorted(causes)})
     return OK
 
 

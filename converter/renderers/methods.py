@@ -10,8 +10,9 @@ from functools import cache
 from typing import Any, Literal
 
 from converter.renderers.base import Renderer
+from converter.scene.depth import MAX_DEPTH
 from converter.scene.model import Scene
-from converter.scene.settings import DEEPEST, MOST_THREADS, Settings
+from converter.scene.settings import MOST_THREADS, Settings
 from converter.shapes.table import shape_kind
 
 Family = Literal["native", "mitsuba", "povray"]
@@ -137,7 +138,7 @@ def _share(text: str) -> float:
 
 
 _SETTINGS: Mapping[str, tuple[str, Callable[[str], Any]]] = {
-    "max_depth": (f"a whole number from 0 to {DEEPEST}", _within(0, DEEPEST)),
+    "max_depth": (f"a whole number from 0 to {MAX_DEPTH}", _within(0, MAX_DEPTH)),
     "cutoff": ("a number or a fraction from 0 on", _share),
     "threads": (f"a whole number from 1 to {MOST_THREADS}", _within(1, MOST_THREADS)),
 }
@@ -228,7 +229,7 @@ def _following_methods() -> Iterator[Method]:
     def method(name: str, use: str, **changes: Any) -> Method:
         return Method(name, "native", "the native tracer, following more rays or fewer", use, {}, changes)
 
-    yield method("native:cutoff=0", "drops no ray for its weight: for figures, not for pictures", cutoff=0.0)
+    yield method("native:cutoff=0", "drops no ray for its weight, but may for its depth: for figures", cutoff=0.0)
     yield method("native:cutoff=1/4096", "drops rays below 1/4096: dark parts can be brightened", cutoff=1 / 4096)
     yield method("native:cutoff=1/512", "drops rays below 1/512, hardly seen in 8 bits: the default", cutoff=1 / 512)
     yield method("native:cutoff=1/64", "drops rays below 1/64: a preview", cutoff=1 / 64)

@@ -83,7 +83,7 @@ class _Tracer:
 
     def __init__(self, integrator: Any) -> None:
         self._integrator = integrator
-        self._max_depth = integrator.max_depth[0]
+        self._cutoff = integrator.cutoff[0]
 
     def trees(self, rays: _Rays) -> list[RayRecord]:
         """The rays' records, with everything below them."""
@@ -148,10 +148,11 @@ class _Tracer:
             which = []
             columns = (_list(numbers, count) for numbers in (coefficient, follows, throughputs))
             for i, (factor, goes_on, its_throughput) in enumerate(zip(*columns, strict=True)):
-                if level[i].hit is None or factor == 0:
+                unbounded = level[i].throughput * factor  # by any limit
+                if level[i].hit is None or unbounded == 0:
                     continue
                 if not goes_on:
-                    level[i].dropped[kind] = "depth" if depth > self._max_depth else "cutoff"
+                    level[i].dropped[kind] = "cutoff" if unbounded < self._cutoff else "depth"
                     continue
                 coefficients[i][kind] = factor
                 which.append((i, its_throughput))

@@ -101,7 +101,7 @@ class PixelRecord:
 
 
 def pixel_record(told: Mapping[str, Any]) -> PixelRecord:
-    """What `native_tracer.trace_pixel` tells, as a record."""
+    """What `trace_pixel` of a tracer in C++ tells, as a record."""
     return PixelRecord(told["x"], told["y"], told["color"], [_ray_record(ray) for ray in told["rays"]])
 
 
@@ -110,4 +110,10 @@ def _ray_record(told: Mapping[str, Any]) -> RayRecord:
     throughput, hit, children = rest.pop("weight"), rest.pop("hit"), rest.pop("children")
     if hit is not None:
         hit = HitRecord(**hit | {"lights": [LightRecord(**light) for light in hit["lights"]]})
-    return RayRecord(throughput=throughput, hit=hit, children=list(map(_ray_record, children)), **rest)
+    ray = RayRecord(throughput=throughput, hit=hit, children=list(map(_ray_record, children)), **rest)
+    if "radiance" not in rest:  # not every tracer tells it
+        ray.radiance = ray.local
+        for child in ray.children:
+            factor = child.throughput / ray.throughput
+            ray.radiance = tuple(a + factor * b for a, b in zip(ray.radiance, child.radiance, strict=True))
+    return ray

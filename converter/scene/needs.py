@@ -1,18 +1,13 @@
 """What a scene needs of a renderer, worked out once, so that neither renderer models more than that."""
 
-import math
 import sys
 from dataclasses import dataclass
 
+from converter.scene.depth import DepthLimit, depth_limit, follows
 from converter.scene.geometry import scene_facts
 from converter.scene.model import Color, Finish, Scene, Vector
 from converter.scene.settings import IorReading, Settings
 from converter.shapes.kind import Facts
-
-MAX_DEPTH = 64
-"""Deepest default for scenes in which every ray has at most one successor."""
-MAX_DEPTH_BRANCHING = 16
-"""Deepest default where a finish both reflects and transmits, so that a ray may have two successors."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -26,7 +21,7 @@ class SceneNeeds:
         branches: a ray may be followed by both at once.
         lit: a surface has kd or ks > 0 and there is a light: shadow rays are needed.
         glossy: a lit surface has ks > 0: highlights are needed.
-        max_depth: bounces to follow after the primary ray.
+        depth: how many bounces to follow after the primary ray, and why.
         background: linear RGB of rays that hit nothing.
         facts: what is known of each object's shape; the columns below are taken from it.
         planes: for each object the indices of the planes that have a face, ascending; for a sphere none, and all for a
@@ -46,13 +41,18 @@ class SceneNeeds:
     branches: bool
     lit: bool
     glossy: bool
-    max_depth: int
+    depth: DepthLimit
     background: Color
     facts: tuple[Facts, ...]
     planes: tuple[tuple[int, ...], ...]
     plates: tuple[tuple[int, ...], ...]
     boxes: tuple[tuple[Vector, Vector], ...]
     bounded: tuple[bool, ...]
+
+    @property
+    def max_depth(self) -> int:
+        """Bounces to follow after the primary ray."""
+        return self.depth.bounces
 
     @property
     def bounces(self) -> bool:
@@ -64,13 +64,13 @@ def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
     """Work out what `scene`, drawn with `settings`, needs."""
     finishes = tuple(sorted({o.finish for o in scene.objects}))
     used = [scene.finishes[i] for i in finishes]
-    # A ray of the first bounce weighs kr or kt: below the cut-off it is never traced, so nothing needs it.
-    reflects = any(f.kr > 0 and f.kr >= settings.cutoff for f in used)
-    refracts = any(f.kt > 0 and f.kt >= settings.cutoff for f in used)
-    branches = any(min(f.kr, f.kt) > 0 and min(f.kr, f.kt) >= settings.cutoff for f in used)
+    largest = max((max(f.kr, f.kt) for f in used), default=0.0)
+    reflects = any(follows(f.kr, largest, settings.cutoff) for f in used)
+    refracts = any(follows(f.kt, largest, settings.cutoff) for f in used)
+    branches = any(follows(min(f.kr, f.kt), largest, settings.cutoff) for f in used)
     facts = scene_facts(scene)
-    max_depth = depth_limit(used, settings)
-    bounces = max_depth > 0
+    depth = depth_limit(used, settings)
+    bounces = depth.bounces > 0
     return SceneNeeds(
         pigments=tuple(sorted({o.pigment for o in scene.objects})),
         finishes=finishes,
@@ -80,7 +80,7 @@ def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
         branches=branches and bounces,
         lit=bool(scene.lights) and any(f.kd > 0 or f.ks > 0 for f in used),
         glossy=bool(scene.lights) and any(f.ks > 0 for f in used),
-        max_depth=max_depth,
+        depth=depth,
         background=scene.ambient if settings.background is None else settings.background,
         facts=facts,
         planes=tuple(f.planes for f in facts),
@@ -88,23 +88,6 @@ def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
         boxes=tuple((f.low, f.high) for f in facts),
         bounded=tuple(f.bounded for f in facts),
     )
-
-
-def depth_limit(finishes: list[Finish], settings: Settings) -> int:
-    """Bounces that are followed after a primary ray where objects have these finishes.
-
-    As many as the settings allow, or by default within the limits above, and no more than it takes until every weight
-    is below the cut-off: kernels keep room for so many.
-    """
-    largest = max((max(f.kr, f.kt) for f in finishes), default=0.0)
-    if largest == 0 or largest < settings.cutoff:
-        return 0
-    limit = settings.max_depth
-    if limit is None:
-        limit = MAX_DEPTH_BRANCHING if any(f.kr > 0 and f.kt > 0 for f in finishes) else MAX_DEPTH
-    if largest >= 1 or settings.cutoff == 0:
-        return limit
-    return min(limit, math.ceil(math.log(settings.cutoff) / math.log(largest)))
 
 
 def eta(finish: Finish, reading: IorReading) -> float:

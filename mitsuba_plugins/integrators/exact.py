@@ -10,8 +10,8 @@ from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.integrators.columns import column
 from mitsuba_plugins.integrators.contacts import LightContacts
 from mitsuba_plugins.integrators.geometry import Surface
-from mitsuba_plugins.integrators.rays import NOTHING, Hit, Ray, Real, largest, origin_error, spawn
-from mitsuba_plugins.integrators.rounding import DECIDES_TIES, least_spread, most_blur, surface_error
+from mitsuba_plugins.integrators.rays import NOTHING, Hit, Ray, Real, largest, origin_error, shadow_spread, spawn
+from mitsuba_plugins.integrators.rounding import most_blur, surface_error
 
 
 class Records:
@@ -90,7 +90,7 @@ class ExactSurfaces:
 
     def blocker(self, hit: Hit, d: Any, distance: Any, light: Any, active: Any) -> Any:
         """Some object between `hit` and a light at `distance` in direction `d`, on the side it was seen from."""
-        ray = spawn(hit, d, hit.inside, dr.full(type(distance), least_spread(distance), dr.width(d)))
+        ray = spawn(hit, d, hit.inside, shadow_spread(hit, distance))
         found, close = self.find_blocker(ray, distance, light, active)
         return found if close is None else self._settled_blocker(ray, distance, light, found, active & close)
 
@@ -116,20 +116,33 @@ class ExactSurfaces:
     @dr.syntax
     def _settled(self, ray: Ray, t: Any, index: Any, record: Any, close: Any) -> tuple[Any, Any, Any]:
         if close:
-            t = dr.full(type(t), dr.inf, dr.width(close))
-            error = dr.zeros(type(t), dr.width(close))
-            index = dr.full(mi.UInt32, NOTHING, dr.width(close))
-            record = dr.zeros(mi.UInt32, dr.width(close))
-            tested = dr.zeros(mi.UInt32, dr.width(close))
+            width = dr.width(close)
+            blur = most_blur(t)
+            reach = largest(ray.o)
+            # The first object of those that tie with the nearest: also where one ties with two that do not tie with one
+            # another, the order in which they are visited does not matter.
+            nearest = dr.full(type(t), dr.inf, width)
+            error = dr.zeros(type(t), width)
+            tested = dr.zeros(mi.UInt32, width)
             while close & (tested < self.records.surface_count):
+                met, met_error, _ = self._meet(ray, tested, close)
+                most = blur * (met + reach)
+                met_error = dr.select(met_error <= most, met_error, most)
+                error = dr.select((met < nearest) | ((met == nearest) & (met_error > error)), met_error, error)
+                nearest = dr.minimum(met, nearest)
+                tested += 1
+            t = dr.full(type(t), dr.inf, width)
+            index = dr.full(mi.UInt32, NOTHING, width)
+            record = dr.zeros(mi.UInt32, width)
+            tested = dr.zeros(mi.UInt32, width)
+            while close & (tested < self.records.surface_count) & (index == NOTHING):
                 met, met_error, met_record = self._meet(ray, tested, close)
-                # Objects come in their order: of those at the same distance the first counts.
-                ties = (t < dr.inf) & (t - met <= error + met_error)
-                nearer = (met < t) & ~ties
-                t = dr.select(nearer, met, t)
-                error = dr.select(nearer, met_error, error)
-                index = dr.select(nearer, tested, index)
-                record = dr.select(nearer, met_record, record)
+                most = blur * (met + reach)
+                met_error = dr.select(met_error <= most, met_error, most)
+                ties = (met < dr.inf) & (met - nearest <= error + met_error)
+                t = dr.select(ties, met, t)
+                index = dr.select(ties, tested, index)
+                record = dr.select(ties, met_record, record)
                 tested += 1
         return t, index, record
 
@@ -207,7 +220,7 @@ class ExactSurfaces:
 
 def _off(ray: Ray, sphere: Any, v: Any, w: Any, reach: Any) -> Any:
     """How far a ray's origin and a surface may be off from one another, where ties are decided."""
-    return (ray.t_min + surface_error(sphere, v, w, reach)) * float(DECIDES_TIES)
+    return ray.t_min + surface_error(sphere, v, w, reach)
 
 
 # ---- Sphere ----------------------------------------------------------------------------------------------------------

@@ -127,6 +127,12 @@ def reflect(d: Any, n: Any) -> Any:
     return unit(d - n * (2 * dr.dot(d, n)))
 
 
+def shadow_spread(hit: Hit, distance: Any) -> Any:
+    """How far the direction to a light may be off: it leads there from wherever the point really is."""
+    turn = quotient(origin_error(hit.p, hit.t), distance)
+    return dr.minimum(least_spread(distance) + turn, most_blur(distance))
+
+
 def mirrored_spread(ray: Ray, hit: Hit) -> Any:
     """How far the direction of a mirrored ray may be off."""
     return dr.minimum(ray.spread + 2 * hit.lean + least_spread(ray.spread), most_blur(ray.spread))

@@ -17,13 +17,10 @@ import numpy as np
 
 from mitsuba_plugins.arithmetic import quotient
 
-DECIDES_TIES = False
-"""Whether ties are decided by rule, as `decides_ties` of the native tracer's rounding.h says of that."""
-
 
 def epsilon(number: Any) -> float:
     """The unit of the bounds: the distance from 1 to the next double. 0 in single precision, which decides no ties."""
-    return 2.0**-52 if DECIDES_TIES and dr.type_v(number) == dr.VarType.Float64 else 0.0
+    return 2.0**-52 if dr.type_v(number) == dr.VarType.Float64 else 0.0
 
 
 def least_spread(number: Any) -> float:
@@ -38,7 +35,7 @@ def most_blur(number: Any) -> float:
 
 def input_error(number: float) -> float:
     """Of a number in a file: a whole one is meant as it stands, any other is a decimal that was rounded to a double."""
-    return 0.0 if number == math.floor(number) or not DECIDES_TIES else 2.0**-52 * abs(number)
+    return 0.0 if number == math.floor(number) else 2.0**-52 * abs(number)
 
 
 def camera_errors(types: Any, sensor: Any) -> tuple[Any, Any]:

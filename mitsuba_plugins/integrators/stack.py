@@ -11,7 +11,8 @@ from mitsuba_plugins.integrators.rays import Ray, Real
 class RayStack:
     """Rays that wait for their turn, with their weights and depths: one small buffer for each of their numbers.
 
-    Small, since Dr.Jit 1.5 may crash with buffers of more than 128 bytes: 16 doubles, the deepest default of a tree.
+    Small, since Dr.Jit 1.5 may crash with buffers of more than 128 bytes: 16 doubles. Fewer wait than the logarithm, to
+    base 2, of the rays of a pixel: 15, unless a user asks for a greater depth than the default.
     Indices and masks have full width: an index of width 1 would make all SIMD lanes use one slot.
     """
 

@@ -33,7 +33,6 @@ from mitsuba_plugins.integrators.rays import (
     unit,
 )
 from mitsuba_plugins.integrators.rounding import (
-    DECIDES_TIES,
     camera_errors,
     coordinate_errors,
     epsilon,
@@ -73,6 +72,16 @@ class Whitted(mi.SamplingIntegrator):
      * - max_depth
        - |int|
        - Bounces after the primary ray (Default: 16)
+
+     * - waiting
+       - |int|
+       - Most rays of a tree that wait at once, if of two the one with the smaller kr or kt is followed first
+         (Default: max_depth)
+
+     * - depth_limited
+       - |bool|
+       - Count the pixels in which max_depth drops rays that the cutoff would keep, as ``pixels_too_deep``
+         (Default: false)
 
      * - cutoff
        - |float|
@@ -142,7 +151,9 @@ class Whitted(mi.SamplingIntegrator):
         self.branching = props.get("branching", True) and self.reflection and self.refraction
         self.shadows = props.get("shadows", True)
         self.highlights = props.get("highlights", True)
-        self.stack_size = max(1, props.get("max_depth", 16))
+        self.stack_size = max(1, props.get("waiting", props.get("max_depth", 16)))
+        self.depth_limited = props.get("depth_limited", False)
+        self.pixels_too_deep = 0
         self._tracer: Any = None
         self._eye_contact: EyeContact | None = None
 
@@ -196,7 +207,7 @@ class Whitted(mi.SamplingIntegrator):
 
     def _errors(self, ray: Ray, hit: Hit):
         """How far the coordinates of a hit may be off, where a pigment asks."""
-        if not DECIDES_TIES or not self._materials.has_edges or self.intersections in ("offset", "ulp"):
+        if not self._materials.has_edges or self.intersections in ("offset", "ulp"):
             return self.types.Vector3(0)
         return coordinate_errors(hit.p, hit.n, ray.d, hit.t, self._tracer.error(ray, hit))
 
@@ -244,9 +255,10 @@ class Whitted(mi.SamplingIntegrator):
 
     @dr.syntax
     def trace(self, ray: Ray, active):
-        """Radiance (Color3) along rays: the whole tree below each, in one kernel.
+        """Radiance (Color3) along rays: the whole tree below each, in one kernel; and, if `depth_limited`, whether
+        the limit dropped a ray that the cut-off would have kept, else False.
 
-        Where a surface sends on two rays, the refracted one waits on a stack in local memory.
+        Where a surface sends on two rays, the heavier one waits on a stack in local memory.
         """
         # Everything starts at full width: with an index of width 1, all SIMD lanes would share one stack.
         width = dr.width(ray.d)
@@ -254,6 +266,7 @@ class Whitted(mi.SamplingIntegrator):
         weight = dr.full(self.types.Float, 1, width)
         depth = dr.zeros(mi.UInt32, width)
         active = active & lanes(width)
+        too_deep = dr.zeros(mi.Bool, width) if self.depth_limited else False
         waiting = dr.zeros(mi.UInt32, width)
         stack = RayStack(self.types, self.stack_size if self.branching else 0)
         while active:
@@ -264,14 +277,21 @@ class Whitted(mi.SamplingIntegrator):
 
             depth += 1
             mirror_weight, mirrors, through_weight, refracts = self.followed(weight, depth, hit, finish)
+            if dr.hint(self.depth_limited, mode="scalar"):
+                heavier = weight * dr.maximum(finish.kr, finish.kt)
+                too_deep |= hit.valid & (depth > self.max_depth) & (heavier > 0) & (heavier >= self.cutoff)
             active = mirrors | refracts
-            weight = dr.select(mirrors, mirror_weight, through_weight)
             if dr.hint(self.branching, mode="scalar"):
-                through = self.transmitted(ray, hit, finish.eta)[0]
+                through, mirrored = self.transmitted(ray, hit, finish.eta)[0], self.reflected(ray, hit)
                 pushes = mirrors & refracts
-                stack.write(waiting, through, through_weight, depth, pushes)
+                # The lighter one first, which has the smaller tree below it: so few rays wait.
+                mirrors_first = mirrors & ~(refracts & (finish.kt < finish.kr))
+                later = dr.select(mirrors_first, through, mirrored)
+                later_weight = dr.select(mirrors_first, through_weight, mirror_weight)
+                stack.write(waiting, later, later_weight, depth, pushes)
                 waiting += dr.select(pushes, mi.UInt32(1), 0)
-                ray = dr.select(mirrors, self.reflected(ray, hit), through)
+                ray = dr.select(mirrors_first, mirrored, through)
+                weight = dr.select(mirrors_first, mirror_weight, through_weight)
                 resumes = ~active & (waiting > 0)
                 waiting -= dr.select(resumes, mi.UInt32(1), 0)
                 waiting_ray, waiting_weight, waiting_depth = stack.read(waiting, resumes)
@@ -280,12 +300,15 @@ class Whitted(mi.SamplingIntegrator):
                 depth = dr.select(resumes, waiting_depth, depth)
                 active |= resumes
             elif dr.hint(self.reflection and self.refraction, mode="scalar"):
+                weight = dr.select(mirrors, mirror_weight, through_weight)
                 ray = dr.select(mirrors, self.reflected(ray, hit), self.transmitted(ray, hit, finish.eta)[0])
             elif dr.hint(self.reflection, mode="scalar"):
+                weight = mirror_weight
                 ray = self.reflected(ray, hit)
             elif dr.hint(self.refraction, mode="scalar"):
+                weight = through_weight
                 ray = self.transmitted(ray, hit, finish.eta)[0]
-        return radiance
+        return radiance, too_deep
 
     def followed(self, weight, depth, hit: Hit, finish: Finish):
         """Weight of the mirrored ray of a hit, and where it is followed; the same of the refracted one.
@@ -321,7 +344,7 @@ class Whitted(mi.SamplingIntegrator):
     def sample(self, scene, sampler, ray, medium=None, active=True):
         """Radiance along single-precision rays, of any sensor."""
         with self.prepared(scene):
-            color = self.trace(start_ray(self.types, ray.o, unit(mi.Vector3d(ray.d))), active)
+            color, _ = self.trace(start_ray(self.types, ray.o, unit(mi.Vector3d(ray.d))), active)
         return mi.Color3f(color), mi.Bool(active), []
 
     def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
@@ -345,7 +368,8 @@ class Whitted(mi.SamplingIntegrator):
 
         Yields:
             The first row of a finished band within the film's crop window, and its pixels' colours (Color3f), row by
-            row. After every launch `progress`, if any, is called with the finished share of the picture.
+            row. Its pixels are among `pixels_too_deep` by then. After every launch `progress`, if any, is called with
+            the finished share of the picture.
 
         """
         offsets = self.sample_offsets(spp or sensor.sampler().sample_count())
@@ -355,40 +379,50 @@ class Whitted(mi.SamplingIntegrator):
     def _bands(self, sensor, offsets, progress):
         width, height = sensor.film().crop_size()
         table = column(mi.Float64, offsets)
-        pace = Pace(self.branching)
+        pace = Pace(self.branching, self.max_depth[0])
+        self.pixels_too_deep = 0
         first = 0
         while first < height:
             rows = min(height - first, pace.rows(width))
-            color = dr.opaque(mi.Color3d, 0, rows * width)  # so that the first launch needs no kernel of its own
+            # Opaque, so that the first launch needs no kernel of its own.
+            color = dr.opaque(mi.Color3d, 0, rows * width)
+            too_deep = dr.opaque(mi.Bool, False, rows * width) if self.depth_limited else False
             done = 0
             while done < len(offsets):
                 count = min(len(offsets) - done, pace.samples(rows * width))
                 with pace.launch(rows * width * count):
-                    color = self._add_samples(sensor, color, first, table, done, done + count)
-                    dr.eval(color)
+                    color, too_deep = self._add_samples(sensor, color, too_deep, first, table, done, done + count)
+                    dr.eval(color, too_deep)
                     dr.sync_thread()
                 done += count
                 if progress is not None:
                     progress((first + rows * done / len(offsets)) / height)
+            if self.depth_limited:
+                self.pixels_too_deep += dr.count(too_deep)[0]
             yield first, mi.Color3f(quotient(color, len(offsets)))
             first += rows
 
     @dr.syntax
-    def _add_samples(self, sensor, color, first, offsets, sample, end):
-        """Colours of the pixels of whole rows from row `first` on, with those of some more samples added."""
+    def _add_samples(self, sensor, color, too_deep, first, offsets, sample, end):
+        """What `trace` finds for the pixels of whole rows from row `first` on, with some more samples added."""
         width = dr.width(color)
         corner = _corners(sensor.film(), first, width)
         if dr.hint(dr.width(offsets) == 2, mode="scalar"):
             # One sample needs no loop, which takes twice as long to record.
-            color += self.trace(self.primary_ray(sensor, corner + dr.gather(mi.Point2d, offsets, mi.UInt32(0))), True)
+            position = corner + dr.gather(mi.Point2d, offsets, mi.UInt32(0))
+            more, deep = self.trace(self.primary_ray(sensor, position), True)
+            color += more
+            too_deep |= deep
         else:
             # Opaque, so that all numbers of samples share one kernel.
             sample, end = dr.opaque(mi.UInt32, sample, width), dr.opaque(mi.UInt32, end)
             while sample < end:
                 position = corner + dr.gather(mi.Point2d, offsets, sample)
-                color += self.trace(self.primary_ray(sensor, position), True)
+                more, deep = self.trace(self.primary_ray(sensor, position), True)
+                color += more
+                too_deep |= deep
                 sample += 1
-        return color
+        return color, too_deep
 
     @staticmethod
     def sample_offsets(spp):

@@ -260,6 +260,7 @@ void bind_render(nb::module_& module) {
                 result["transmitted"] = image.counts.transmitted;
                 result["shadow"] = image.counts.shadow;
                 result["deepest"] = image.counts.deepest;
+                result["pixels_too_deep"] = image.counts.pixels_too_deep;
                 result["threads"] = image.threads;
                 result["search"] = image.by_tree ? "bvh" : "brute";
                 return result;

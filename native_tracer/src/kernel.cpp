@@ -22,6 +22,7 @@ class PrimaryRays {
           tile_(tile),
           grid_(settings.grid),
           shift_(settings.corner ? Real(0.5) : Real(0)),
+          reach_(max_norm(Vector<Lanes<Real>>(camera.eye()))),
           column_(tile.left),
           row_(tile.top) {}
 
@@ -40,9 +41,9 @@ class PrimaryRays {
         group.rays.t_min = camera_.eye_error();
         group.rays.object = contact_.object;
         group.rays.patch = contact_.patch;
-        group.rays.inside = contact_.leads_inside(group.rays.direction, camera_.spread());
+        group.rays.inside = contact_.leads_inside(group.rays.direction, camera_.eye_error(), camera_.spread());
         group.rays.spread = camera_.spread();
-        group.rays.reach = max_norm(group.rays.origin);
+        group.rays.reach = reach_;
         group.weight = Real(1);
         group.depth = 0;
         group.pixel = Indices<Real>((row_ - tile_.top) * (tile_.right - tile_.left) + column_ - tile_.left) +
@@ -74,6 +75,7 @@ class PrimaryRays {
     const Tile tile_;
     const int grid_;
     const Real shift_;
+    const Lanes<Real> reach_;  // of the eye
     int column_, row_;
     int sample_ = 0;  // a place in the grid
 };

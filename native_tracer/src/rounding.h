@@ -24,18 +24,15 @@
 
 namespace whitted::WHITTED_ISA {
 
-// Whether ties are decided by rule. Not yet: with full bounds, families of the stability study hold for a decade less.
-inline constexpr bool decides_ties = false;
-
 // The numbers of a file are rounded to double before any precision sees them.
 template <typename Real>
-inline constexpr Real input_epsilon = static_cast<Real>(std::max<long double>(
-    std::numeric_limits<Real>::epsilon(), decides_ties ? std::numeric_limits<double>::epsilon() : 0));
+inline constexpr Real input_epsilon = static_cast<Real>(
+    std::max<long double>(std::numeric_limits<Real>::epsilon(), std::numeric_limits<double>::epsilon()));
 
 // The unit of the bounds by which ties are decided. In single precision they would be seen in pictures: it decides
 // none.
 template <typename Real>
-inline constexpr Real tie_epsilon = decides_ties && sizeof(Real) > sizeof(float) ? input_epsilon<Real> : Real(0);
+inline constexpr Real tie_epsilon = sizeof(Real) > sizeof(float) ? input_epsilon<Real> : Real(0);
 
 // Of a unit vector's component and of its products with others, some eight roundings.
 template <typename Real>

@@ -12,6 +12,7 @@
 #pragma once
 
 #include <limits>
+#include <type_traits>
 
 #include "ray.h"
 #include "rounding.h"
@@ -47,6 +48,8 @@ struct Sphere {
     Real radius;
     Real error;   // how far the surface may be off
     Real reach2;  // a line farther from the centre than its root misses, whatever was rounded
+    Real diameter;
+    Real touching, most_touching;  // of a line that touches it, the discriminant for its error, and at most
     int object, patch;
 
     Sphere(const Patch<Real>& sphere, int object_, int patch_)
@@ -54,6 +57,9 @@ struct Sphere {
           radius(sphere.size),
           error(sphere.error),
           reach2(radius * radius * (1 + 32 * std::numeric_limits<Real>::epsilon())),
+          diameter(2 * radius),
+          touching(diameter * error),
+          most_touching(most_blur<Real> * radius * radius),
           object(object_),
           patch(patch_) {}
 };
@@ -97,8 +103,8 @@ template <typename Real>
     const L radius2 = radius * radius;
     const L discriminant = radius2 - across2;
     // A ray that touches the sphere passes it by.
-    const L blur = rays.t_min + L(sphere.error) + abs(closest) * rays.spread;
-    const L touching = radius * min(blur + blur, L(most_blur<Real>) * radius);
+    const L touching = min(L(sphere.diameter) * (rays.t_min + abs(closest) * rays.spread) + L(sphere.touching),
+                           L(sphere.most_touching));
     const L root = sqrt(max(discriminant, zero));
     const L q = closest + select(closest >= zero, root, -root);
     const L other = (dot(g, g) - radius2) / q;
@@ -226,7 +232,7 @@ template <typename Real>
         const Vector<L> normal(plane.anchor);
         const L slope = dot(normal, rays.direction);
         const L height = dot(normal, rays.origin) + L(plane.size);
-        const L error = decides_ties ? rays.t_min + plane.error_at(rays.reach) : zero;
+        const L error = rays.t_min + plane.error_at(rays.reach);
         const Indices<Real> patch = k;
         const L t = select(abs(height) <= error, zero, -height / slope);
         const L t_error = (error + abs(t) * rays.spread) / abs(slope);
@@ -247,27 +253,17 @@ template <typename Real>
     return crossing_of(passage, rays, from_within);
 }
 
-// The same, faster, for rays that are far from ties; adds those that are not to `close`. A quotient is only taken where
-// a plane counts: where the end of the passage so far lies outside of it.
-//
-// Returns false, with nothing said about where, if no ray crosses the polyhedron.
-template <bool which_piece, typename Real>
-[[gnu::always_inline]] inline bool find_crossing(const Polyhedron<Real>& polyhedron, const Patch<Real>* planes,
-                                                 const Rays<Real>& rays, Crossing<Real>& crossing, Mask<Real>& close) {
+// What is known of where rays start.
+enum class Start { elsewhere, mixed, within };
+
+// The passage of rays that are far from ties, faster; adds those that are not to `close`.
+template <Start start, bool which_piece, typename Real>
+[[gnu::always_inline]] inline void pass(const Polyhedron<Real>& polyhedron, const Patch<Real>* planes,
+                                        const Rays<Real>& rays, Passage<Real>& passage, Lanes<Real>& between_planes,
+                                        Mask<Real>& close) {
     using L = Lanes<Real>;
     const L zero = Real(0);
-    const Mask<Real> starts_here = rays.object == Indices<Real>(polyhedron.object);
-    const Mask<Real> from_within = starts_here & rays.inside;
-    const Mask<Real> elsewhere = starts_here & ~rays.inside;
-    if (all(elsewhere)) {
-        return false;
-    }
-    const Indices<Real> own = select(from_within, rays.patch, Indices<Real>(-1));
-    Passage<Real> passage;
-    passage.misses = elsewhere;
-    Mask<Real> along = Mask<Real>::none();
-    L between_planes = std::numeric_limits<Real>::infinity();
-
+    const Mask<Real> from_within = (rays.object == Indices<Real>(polyhedron.object)) & rays.inside;
     const int end = polyhedron.first_plane + polyhedron.plane_count;
     for (int k = polyhedron.first_plane; k < end; ++k) {
         const Patch<Real>& plane = planes[k];
@@ -276,37 +272,76 @@ template <bool which_piece, typename Real>
         const L height = dot(normal, rays.origin) + L(plane.size);
         const L t = -height / slope;
         const Indices<Real> patch = k;
+        const Mask<Real> along = abs(slope) <= rays.spread;
+        if (any(along)) [[unlikely]] {
+            close |= along;
+        }
 
-        const Mask<Real> entering = slope < -rays.spread;
-        const Mask<Real> leaving = slope > rays.spread;
-        along |= ~(entering | leaving);
-        const Mask<Real> enters_last = entering & (t > passage.enter);
-        const Mask<Real> leaves_first = leaving & (t < passage.leave) & ~(own == patch);
+        const Mask<Real> entering = slope < zero;
         if constexpr (which_piece) {
             // No number before the first plane.
-            between_planes = min(abs(t - select(entering, passage.enter, passage.leave)), between_planes);
+            const L before = start == Start::within ? passage.leave : select(entering, passage.enter, passage.leave);
+            between_planes = min(abs(t - before), between_planes);
         }
-        passage.enter = select(enters_last, t, passage.enter);
+        Mask<Real> leaves_first = ~entering & (t < passage.leave);
+        if constexpr (start != Start::elsewhere) {
+            leaves_first &= ~(from_within & (rays.patch == patch));
+        }
         passage.leave = select(leaves_first, t, passage.leave);
-        passage.enter_patch = select(enters_last, patch, passage.enter_patch);
         passage.leave_patch = select(leaves_first, patch, passage.leave_patch);
-
-        passage.misses |= ((passage.enter > passage.leave) | (passage.leave < rays.t_min)) & ~from_within;
-        if (all(passage.misses)) {
-            break;
+        if constexpr (start == Start::within) {
+            continue;
         }
+        const Mask<Real> enters_last = entering & (t > passage.enter);
+        passage.enter = select(enters_last, t, passage.enter);
+        passage.enter_patch = select(enters_last, patch, passage.enter_patch);
+
+        Mask<Real> misses = (passage.enter > passage.leave) | (passage.leave < rays.t_min);
+        if constexpr (start == Start::mixed) {
+            misses &= ~from_within;
+        }
+        passage.misses |= misses;
+        if (all(passage.misses)) {
+            return;
+        }
+    }
+}
+
+// Returns false, with nothing said about where, if no ray crosses the polyhedron.
+template <bool which_piece, typename Real>
+[[gnu::always_inline]] inline bool find_crossing(const Polyhedron<Real>& polyhedron, const Patch<Real>* planes,
+                                                 const Rays<Real>& rays, Crossing<Real>& crossing, Mask<Real>& close) {
+    using L = Lanes<Real>;
+    const L zero = Real(0);
+    const L infinity = std::numeric_limits<Real>::infinity();
+    const Mask<Real> starts_here = rays.object == Indices<Real>(polyhedron.object);
+    const Mask<Real> from_within = starts_here & rays.inside;
+    const Mask<Real> elsewhere = starts_here & ~rays.inside;
+    if (all(elsewhere)) {
+        return false;
+    }
+    Passage<Real> passage;
+    passage.misses = elsewhere;
+    L between_planes = infinity;
+    if (!any(from_within)) {
+        pass<Start::elsewhere, which_piece>(polyhedron, planes, rays, passage, between_planes, close);
+    } else if (which_piece && all(from_within)) {
+        pass<Start::within, which_piece>(polyhedron, planes, rays, passage, between_planes, close);
+    } else {
+        pass<Start::mixed, which_piece>(polyhedron, planes, rays, passage, between_planes, close);
     }
     // Later planes only bring the ends of the passage farther apart.
     const L gap = passage.enter - passage.leave;
-    const Mask<Real> at_edge = (gap > zero) & (gap <= L(most_blur<Real>) * (rays.reach + passage.enter));
-    close |= (along | at_edge) & ~elsewhere;
+    const Mask<Real> at_edge = (gap > zero) & (gap <= L(most_blur<Real>) * (rays.reach + passage.enter)) & ~elsewhere;
+    if (any(at_edge)) [[unlikely]] {
+        close |= at_edge;
+    }
     if (all(passage.misses)) {
         return false;
     }
     crossing = crossing_of(passage, rays, from_within);
     if constexpr (which_piece) {
-        close |= (between_planes < L(most_blur<Real>) * (rays.reach + crossing.t)) &
-                 (crossing.t < L(std::numeric_limits<Real>::infinity()));
+        close |= (between_planes < L(most_blur<Real>) * (rays.reach + crossing.t)) & (crossing.t < infinity);
     }
     return true;
 }

@@ -73,6 +73,7 @@ class Tracer {
     RayStack<Real> reflected_, transmitted_, batch_;
     Color<Sum>* sums_ = nullptr;
     RayCounts* counts_ = nullptr;
+    std::vector<bool> too_deep_;  // by pixel, up to the last one of which the depth limit dropped a ray
 };
 
 template <typename Real, typename Observer>
@@ -83,6 +84,7 @@ bool Tracer<Real, Observer>::trace(PrimaryRays primary_rays, Color<Sum>* sums, R
     counts_ = &counts;
     reflected_.clear();
     transmitted_.clear();
+    too_deep_.clear();
     while (!stop.load(std::memory_order_relaxed)) {
         if (reflected_.size() + transmitted_.size() < batch_size && !primary_rays.done()) {
             // Whole rows of pixels, for where a row is cut depends on the number of lanes.
@@ -102,6 +104,7 @@ bool Tracer<Real, Observer>::trace(PrimaryRays primary_rays, Color<Sum>* sums, R
                 trace_group(batch_.group(first));
             }
         } else {
+            counts.pixels_too_deep += static_cast<std::uint64_t>(std::count(too_deep_.begin(), too_deep_.end(), true));
             return true;
         }
     }
@@ -167,12 +170,9 @@ Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const H
         surface.error = rounding_error(reach, hits.t);
         surface.lean = L(patch.curvature) * surface.error;
 
-        surface.pigment = color_at(*object.pigment, surface.point, [&] {
-            // A ray that is off meets the surface farther off the more it slants.
-            const L off = decides_ties ? rays.t_min + patch.error_at(rays.reach) + hits.t * rays.spread : zero;
-            const L along = min(off / abs(dot(surface.outward, rays.direction)), L(most_blur<Real>) * (reach + hits.t));
-            return coordinate_errors(surface.point, surface.outward, rays.direction, off, along);
-        });
+        const L off = rays.t_min + patch.error_at(rays.reach) + hits.t * rays.spread;
+        const L blur = L(most_blur<Real>) * (reach + hits.t);
+        surface.pigment = color_at(*object.pigment, {surface.point, surface.outward, rays.direction, off, blur});
         const Finish<Real>& finish = object.finish;
         surface.ka = finish.ka;
         surface.kd = finish.kd;
@@ -210,7 +210,8 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
         const Light<Real>& light = scene_.lights[i];
         const Vector<L> path = Vector<L>(light.position) - surface.point;
         const L distance = length(path);
-        const Vector<L> to_light = path * (one / distance);
+        const L nearness = one / distance;
+        const Vector<L> to_light = path * nearness;
         const L cosine = dot(surface.normal, to_light);
         // A surface is not lit along itself, nor by a light at the very point.
         const Mask<Real> faces =
@@ -220,6 +221,8 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
         if (any(faces)) {
             counts_->shadow += static_cast<std::uint64_t>(count(faces));
             shadow_rays.direction = to_light;
+            // It leads to the light from wherever the point really is.
+            shadow_rays.spread = min(L(least_spread<Real>) + surface.error * nearness, L(most_blur<Real>));
             blocker = scene_.blocker(shadow_rays, light, distance, faces);
         }
         const Mask<Real> lit = faces & (blocker < 0);
@@ -345,6 +348,16 @@ Mask<Real> Tracer<Real, Observer>::worthwhile(const Group<Real>& group, RayKind 
     const Mask<Real> weighty = weight >= L(cutoff_);
     const Mask<Real> shallow = group.depth < Indices<Real>(max_depth_);
     observer_.dropped(group, kind, wanted, weighty, shallow);
+    const Mask<Real> too_deep = wanted & weighty & ~shallow;
+    if (any(too_deep)) [[unlikely]] {
+        for (unsigned lanes = too_deep.bits(); lanes != 0; lanes &= lanes - 1) {
+            const auto pixel = static_cast<std::size_t>(group.pixel[std::countr_zero(lanes)]);
+            if (pixel >= too_deep_.size()) {
+                too_deep_.resize(pixel + 1);
+            }
+            too_deep_[pixel] = true;
+        }
+    }
     return wanted & weighty & shallow;
 }
 

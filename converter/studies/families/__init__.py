@@ -13,6 +13,7 @@ from converter.studies.families import (
     reflection,
     refraction,
     size,
+    ties,
 )
 from converter.studies.family import Family
 
@@ -20,6 +21,7 @@ FAMILIES: Mapping[str, Family] = {
     family.name: family
     for module in (
         size,
+        ties,
         distance,
         contact,
         coincidence,
@@ -29,6 +31,7 @@ FAMILIES: Mapping[str, Family] = {
         lights_and_camera,
         incidence,
         ray_trees,
+        ties,
     )
     for family in module.FAMILIES
 }
