@@ -81,8 +81,14 @@ class ExactSurfaces:
         within = (index == ray.object) | (dr.squared_norm(ray.o - center) < dr.square(radius))
         p, n = self.records.surface_point(surface, ray.o + t * ray.d, dr.select(within, ray.d, -ray.d))
         inside = dr.select(index == ray.object, ray.inside, dr.dot(n, ray.d) > 0)
-        lean = dr.select(sphere, quotient(origin_error(p, t), radius), 0)
-        return Hit(valid, t, index, record, p, n, inside, lean)
+        error = origin_error(p, t)
+        if close is not None:
+            # A ray that is off meets the surface farther off the more it slants.
+            off = _off(ray, *surface, largest(ray.o)) + t * ray.spread
+            along = quotient(off, dr.abs(dr.dot(n, ray.d)))
+            error += dr.minimum(along, most_blur(t) * (largest(p) + t))
+        lean = dr.select(sphere, quotient(error, radius), 0)
+        return Hit(valid, t, index, record, p, n, inside, error, lean)
 
     def spawn(self, hit: Hit, d: Any, inside: Any, spread: Any) -> Ray:
         """The ray that leaves `hit` in direction `d`, on the given side of the object."""
