@@ -11,7 +11,7 @@ from mitsuba_plugins.integrators.columns import column
 from mitsuba_plugins.integrators.contacts import LightContacts
 from mitsuba_plugins.integrators.geometry import Surface
 from mitsuba_plugins.integrators.rays import NOTHING, Hit, Ray, Real, largest, origin_error, shadow_spread, spawn
-from mitsuba_plugins.integrators.rounding import most_blur, surface_error
+from mitsuba_plugins.integrators.rounding import decides_ties, most_blur, surface_error
 
 
 class Records:
@@ -73,7 +73,8 @@ class ExactSurfaces:
     def closest(self, ray: Ray, active: Any) -> Hit:
         """The first surface that a ray meets, the point moved onto it to shed the error along the normal."""
         t, index, record, close = self.find_closest(ray, active)
-        if close is not None:
+        ties = close is not None and decides_ties(t)
+        if ties:
             t, index, record = self._settled(ray, t, index, record, active & close)
         valid = active & (index != NOTHING)
         surface = self.records.surface(index, record, valid)
@@ -82,7 +83,7 @@ class ExactSurfaces:
         p, n = self.records.surface_point(surface, ray.o + t * ray.d, dr.select(within, ray.d, -ray.d))
         inside = dr.select(index == ray.object, ray.inside, dr.dot(n, ray.d) > 0)
         error = origin_error(p, t)
-        if close is not None:
+        if ties:
             # A ray that is off meets the surface farther off the more it slants.
             off = _off(ray, *surface, largest(ray.o)) + t * ray.spread
             along = quotient(off, dr.abs(dr.dot(n, ray.d)))
@@ -98,7 +99,9 @@ class ExactSurfaces:
         """Some object between `hit` and a light at `distance` in direction `d`, on the side it was seen from."""
         ray = spawn(hit, d, hit.inside, shadow_spread(hit, distance))
         found, close = self.find_blocker(ray, distance, light, active)
-        return found if close is None else self._settled_blocker(ray, distance, light, found, active & close)
+        if close is None or not decides_ties(distance):
+            return found
+        return self._settled_blocker(ray, distance, light, found, active & close)
 
     def error(self, ray: Ray, hit: Hit) -> Any:
         """How far a ray and the surface that it has met may be off from one another."""

@@ -18,9 +18,14 @@ import numpy as np
 from mitsuba_plugins.arithmetic import quotient
 
 
+def decides_ties(number: Any) -> bool:
+    """Whether ties are decided in arithmetic like that of `number`: in single precision the bounds would be seen."""
+    return bool(dr.type_v(number) == dr.VarType.Float64)
+
+
 def epsilon(number: Any) -> float:
-    """The unit of the bounds: the distance from 1 to the next double. 0 in single precision, which decides no ties."""
-    return 2.0**-52 if dr.type_v(number) == dr.VarType.Float64 else 0.0
+    """The unit of the bounds: the distance from 1 to the next double; 0 where no ties are decided."""
+    return 2.0**-52 if decides_ties(number) else 0.0
 
 
 def least_spread(number: Any) -> float:

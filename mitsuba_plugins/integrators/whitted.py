@@ -35,6 +35,7 @@ from mitsuba_plugins.integrators.rays import (
 from mitsuba_plugins.integrators.rounding import (
     camera_errors,
     coordinate_errors,
+    decides_ties,
     epsilon,
     least_spread,
     most_blur,
@@ -207,7 +208,8 @@ class Whitted(mi.SamplingIntegrator):
 
     def _errors(self, ray: Ray, hit: Hit):
         """How far the coordinates of a hit may be off, where a pigment asks."""
-        if not self._materials.has_edges or self.intersections in ("offset", "ulp"):
+        decides = decides_ties(hit.t) and self.intersections not in ("offset", "ulp")
+        if not decides or not self._materials.has_edges:
             return self.types.Vector3(0)
         return coordinate_errors(hit.p, hit.n, ray.d, hit.t, self._tracer.error(ray, hit))
 

@@ -34,6 +34,9 @@ inline constexpr Real input_epsilon = static_cast<Real>(
 template <typename Real>
 inline constexpr Real tie_epsilon = sizeof(Real) > sizeof(float) ? input_epsilon<Real> : Real(0);
 
+template <typename Real>
+inline constexpr bool decides_ties = tie_epsilon<Real> > 0;
+
 // Of a unit vector's component and of its products with others, some eight roundings.
 template <typename Real>
 inline constexpr Real least_spread = 4 * tie_epsilon<Real>;

@@ -173,7 +173,7 @@ struct Scene {
         const Lanes<Real> range = Lanes<Real>(most_blur<Real>) * (hits.t + rays.reach);
         close |= (second - hits.t <= range) | (hits.t < range);
         close &= wanted;
-        if (any(close)) [[unlikely]] {
+        if (decides_ties<Real> && any(close)) [[unlikely]] {
             const Hits<Real> settled = nearest_hit_by_rules(rays, close);
             hits.t = select(close, settled.t, hits.t);
             hits.object = select(close, settled.object, hits.object);
@@ -192,7 +192,7 @@ struct Scene {
         };
         Indices<Real> blocker = find_blocker<Ties::found_in_the_way>(rays, light, distance, wanted, close, may_hit);
         close &= wanted;
-        if (any(close)) [[unlikely]] {
+        if (decides_ties<Real> && any(close)) [[unlikely]] {
             blocker = select(close, blocker_by_rules(rays, light, distance, close), blocker);
         }
         return blocker;

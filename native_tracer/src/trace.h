@@ -167,7 +167,7 @@ Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const H
         }
         surface.normal = select(hits.inside, -surface.outward, surface.outward);
         const L reach = max_norm(surface.point);
-        const L off = rays.t_min + patch.error_at(rays.reach) + hits.t * rays.spread;
+        const L off = decides_ties<Real> ? rays.t_min + patch.error_at(rays.reach) + hits.t * rays.spread : zero;
         const L blur = L(most_blur<Real>) * (reach + hits.t);
         // A ray that is off meets the surface farther off the more it slants.
         const L along = min(off / abs(dot(surface.outward, rays.direction)), blur);
