@@ -298,6 +298,10 @@ def narrow(passage: Passage, ray: Ray, n: Any, offset: Any, record: Any) -> Pass
     entering, leaving = cosine < -ray.spread, cosine > ray.spread
     enters = entering & (t > passage.enter) & other
     leaves = leaving & (t < passage.leave) & other
+    if not decides_ties(t):
+        # Outside of a plane that it runs along, a ray has left at once.
+        outside = other & (cosine == 0) & (height > 0)
+        t, leaves = dr.select(outside, -dr.inf, t), leaves | outside
     between = dr.abs(t - dr.select(entering, passage.enter, passage.leave))
     return Passage(
         enter=dr.select(enters, t, passage.enter),

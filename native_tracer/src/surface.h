@@ -268,7 +268,10 @@ template <Start start, bool which_piece, typename Real>
     for (int k = polyhedron.first_plane; k < end; ++k) {
         const Patch<Real>& plane = planes[k];
         const Vector<L> normal(plane.anchor);
-        const L slope = dot(normal, rays.direction);
+        L slope = dot(normal, rays.direction);
+        if constexpr (!decides_ties<Real>) {
+            slope = slope + zero;  // never -0: a ray along the plane leaves it at -infinity if it runs outside
+        }
         const L height = dot(normal, rays.origin) + L(plane.size);
         const L t = -height / slope;
         const Indices<Real> patch = k;
