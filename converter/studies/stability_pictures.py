@@ -66,6 +66,16 @@ SEEN: Mapping[str, tuple[str, str]] = {
     "light-on-ball": ("mitsuba-mesh", "neither light nor wall is left where numbers are too large for Embree"),
     "camera-on-floor": ("mitsuba-offset", "the floor hides what is below it: to Embree the eye is above"),
     "camera-on-ball": ("mitsuba-offset", "rounding decides for every ray whether it starts within the ball"),
+    "tie-tile": ("native-float", "rays that meet the edge of a tile fall on either side of it"),
+    "tie-texel": ("native-float", "rays that meet the edge of a texel fall on either side of it"),
+    "tie-along": ("native-float", "rays along a wall meet it far away, or not"),
+    "tie-in-plane": ("native-float", "rays in the side of a box see it, or not"),
+    "tie-edge": ("native-float", "rays that touch the edge of a box see it, or not"),
+    "tie-bodies": ("native-float", "where two bodies meet, either is seen"),
+    "tie-shadow": ("native-float", "shadow rays that touch the edge of a box are blocked, or not"),
+    "tie-tangent": ("native-float", "rays that touch the ball see it, or not"),
+    "tie-critical": ("native-float", "rays at the critical angle are reflected, or not"),
+    "tie-mirrored": ("native-float", "rays that meet the edge of a tile after some mirrors fall on either side of it"),
 }
 """For each family a method that fails in it, and what is to be seen then."""
 
