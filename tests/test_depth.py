@@ -8,7 +8,7 @@ from math import comb
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from variant import VARIANT
 
@@ -75,6 +75,7 @@ def rays_of_one_finish(kr: float, kt: float, cutoff: float, depth: int) -> int:
     return 1 + sum(comb(n, i) for n, i, weight in weights if weight > 0 and weight >= cutoff)
 
 
+@settings(deadline=None)
 @given(st.floats(0, 1), st.floats(0, 1), cutoffs)
 def test_a_pixel_has_fewer_rays_than_the_bound(kr, kt, cutoff):
     limit = depth_limit([passing(kr, kt)], Settings(cutoff=cutoff))
@@ -104,6 +105,7 @@ def test_the_bound_acts_as_soon_as_there_are_too_many_rays(kr, kt):
     assert depth_limit([passing(kr, kt)], Settings(cutoff=many)).rule == "rays"
 
 
+@settings(deadline=None)
 @given(st.lists(finishes, min_size=1, max_size=4), cutoffs, st.integers(0, 2**32))
 def test_trees_at_random_are_within_the_limit(many, cutoff, seed):
     """Rays meet finishes at random, and of two that follow the lighter one is followed first."""

@@ -42,7 +42,11 @@ class BoxTest {
         // the tree is as far away as twice the sum of both reaches.
         const L both = rays.reach + L(reach);
         const L error = L(std::max(32 * std::numeric_limits<Real>::epsilon(), 4096 * tie_epsilon<Real>)) * both;
-        const L margin = L(growth) * (error + rays.t_min + L(Real(4)) * both * rays.spread);
+        L off = error + rays.t_min;
+        if constexpr (decides_ties<Real>) {
+            off = off + L(Real(4)) * both * rays.spread;
+        }
+        const L margin = L(growth) * off;
         const Vector<L> margins{margin, margin, margin};
         before_ = rays.origin + margins;
         behind_ = rays.origin - margins;
