@@ -42,12 +42,14 @@ def test_links_and_pictures_are_there(page: Path) -> None:
 @pages
 def test_commands_and_options_exist(page: Path) -> None:
     for command, option in _options_named(page.read_text(encoding="utf-8")):
+        assert command in {"", *main.COMMANDS}
         assert option is None or option in _options(command), f"whitted {command} has no {option}"
 
 
 def test_pages_name_options() -> None:
     """What finds them above does."""
-    named = set(_options_named("| `whitted why a.in` | as `--list` |\n\n    whitted render a.in -o --png\n\nAnd `--ior`."))
+    text = "| `whitted why a.in` | as `--list` |\n\n    whitted render a.in --png\n\nAnd `--ior`."
+    named = set(_options_named(text))
     assert named == {("why", None), ("why", "--list"), ("render", None), ("render", "--png"), ("", "--ior")}
     assert ("pixel", "--picture") in _options_named((ROOT / "README.md").read_text(encoding="utf-8"))
 
@@ -145,7 +147,7 @@ def _options_named(text: str) -> Iterator[tuple[str, str | None]]:
     """
     for block in re.split(r"\n(?=\||    )|\n\n", text):
         row = re.match(r"\| `whitted ([a-z]+)", block)
-        codes = [block] if block.startswith("    ") else [code for code in re.findall(r"`([^`]+)`", block)]
+        codes = [block] if block.startswith("    ") else re.findall(r"`([^`]+)`", block)
         for code in codes:
             command = re.search(r"\bwhitted ([a-z]+)\b(.*)", code, re.DOTALL)
             options = re.findall(r"(?<!\S)--[a-z][a-z-]*", command[2] if command else code)
