@@ -112,7 +112,7 @@ def test_projected_bitmap_truncates_and_repeats(mi):
 
 def test_every_width_of_a_projected_bitmap_repeats_exactly(mi):
     """Dr.Jit would multiply by the width's rounded reciprocal, and miss by a whole image."""
-    from mitsuba_plugins.integrators.columns import column
+    from mitsuba_plugins.intersection.columns import column
 
     repeats = 4
     for width in range(1, 2049):
@@ -136,7 +136,7 @@ AT_THE_END = """
 import ctypes, mmap
 import numpy as np
 import mitsuba_plugins, mitsuba as mi
-from mitsuba_plugins.integrators.columns import column
+from mitsuba_plugins.intersection.columns import column
 
 mitsuba_plugins.set_variant({variant!r})
 memory = mmap.mmap(-1, 2 * mmap.PAGESIZE)
@@ -315,11 +315,12 @@ def test_quotients_are_rounded_once(mi):
 
 
 HOST_DIVISIONS = {
-    "integrators/analytic.py": {"_bound"},
-    "integrators/columns.py": {"column"},
-    "integrators/contacts.py": {"__init__", "of"},
-    "integrators/geometry.py": {"_normalised"},
-    "integrators/rounding.py": {"camera_errors"},
+    "intersection/analytic.py": {"_bound"},
+    "intersection/columns.py": {"column"},
+    "intersection/contacts.py": {"__init__"},
+    "intersection/rounding.py": {"camera_errors"},
+    "intersection/shapes/polyhedron.py": {"contacts", "_normalised"},
+    "intersection/shapes/sphere.py": {"contacts"},
     "integrators/pace.py": {"__init__", "rows", "samples", "launch"},
     "trial.py": {"_memory"},
     "integrators/whitted.py": {"__init__", "_bands", "_corners", "sample_offsets"},
@@ -351,7 +352,7 @@ def test_drjit_exp2_in_double_precision_overflows_where_it_should_underflow(mi):
 
 
 def test_power_underflows(mi):
-    from mitsuba_plugins.integrators.rays import power
+    from mitsuba_plugins.intersection.rays import power
 
     base = np.linspace(0, 1, 20_001)
     for exponent in (0.0, 1.0, 1000.0, 1e6):

@@ -33,7 +33,7 @@ def _load(mi: Any, name: str, element: dict[str, Any]) -> Any:
     if element["type"] == "mesh":
         return _mesh(mi, name, element["mesh"], element["bsdf"])
     if "data" in element:
-        from mitsuba_plugins.integrators.columns import column
+        from mitsuba_plugins.intersection.columns import column
 
         image = element["data"]
         texels = column(mi.Float, np.asarray(image.texels, dtype=np.float32))
@@ -45,7 +45,7 @@ def _load(mi: Any, name: str, element: dict[str, Any]) -> Any:
 
 def _mesh(mi: Any, name: str, mesh: Any, bsdf: Any) -> Any:
     """A mesh with a normal for each face, or, where it has them, one for each vertex."""
-    from mitsuba_plugins.integrators.columns import column
+    from mitsuba_plugins.intersection.columns import column
 
     props = mi.Properties()
     props["mesh_bsdf"] = bsdf

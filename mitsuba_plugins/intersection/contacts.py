@@ -12,10 +12,10 @@ import mitsuba as mi
 import numpy as np
 from numpy.typing import NDArray
 
-from mitsuba_plugins.integrators.columns import column
-from mitsuba_plugins.integrators.geometry import Surface
-from mitsuba_plugins.integrators.rays import Ray, Real
-from native_tracer.incidence import surfaces_at, within
+from mitsuba_plugins.intersection.columns import column
+from mitsuba_plugins.intersection.geometry import Surface
+from mitsuba_plugins.intersection.rays import Ray, Real
+from mitsuba_plugins.intersection.shapes.kind import ShapeKind, Vector
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,11 +25,11 @@ Numbers = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """A record that a point lies on: its object, the outward unit normal there, and the radius; 0 of a plane."""
+    """A primitive that a point lies on: its object, the outward unit normal there, and the radius; 0 of a plane."""
 
     object: int
-    record: int
-    normal: tuple[float, float, float]
+    primitive: int
+    normal: Vector
     radius: float
 
 
@@ -37,25 +37,34 @@ class Contacts:
     """Finds the contacts of points with surfaces."""
 
     def __init__(self, surfaces: "Sequence[Surface]") -> None:
-        self._rows = np.array([row for s in surfaces for row in s.rows], dtype=np.float64).reshape(-1, 4)
-        self._object = np.repeat(np.arange(len(surfaces)), [len(s.rows) for s in surfaces])
-        self._round = np.array([s.sphere is not None for s in surfaces], dtype=np.bool_)[self._object]
+        self._surfaces = surfaces
+        counts = [len(surface.shape.given) for surface in surfaces]
+        self._object = np.repeat(np.arange(len(surfaces)), counts)
+        kinds = list({id(surface.kind): surface.kind for surface in surfaces}.values())
+        self._by_kind = [(kind, *self._primitives_of(kind)) for kind in kinds]
+
+    def _primitives_of(self, kind: ShapeKind) -> tuple[NDArray[np.intp], Numbers]:
+        """The primitives of all shapes of a kind: their indices and their rows (n, 4), as given."""
+        primitives = np.flatnonzero(np.array([surface.kind is kind for surface in self._surfaces])[self._object])
+        return primitives, _rows([row for s in self._surfaces if s.kind is kind for row in s.shape.given])
 
     def of(self, point: Numbers) -> list[Contact]:
-        """The contacts of a point (3,), in the order of the records."""
-        found = []
-        for record in surfaces_at(point, self._rows, self._round):
-            row, is_round = self._rows[record], self._round[record]
-            normal = point - row[:3] if is_round else row[:3]
-            # The square of a length may neither overflow nor vanish.
-            normal = normal / np.abs(normal).max()
-            x, y, z = (normal / np.linalg.norm(normal)).tolist()
-            found.append(Contact(int(self._object[record]), record, (x, y, z), float(row[3]) if is_round else 0.0))
-        return found
+        """The contacts of a point (3,), in the order of the primitives."""
+        found = [
+            Contact(int(self._object[primitives[at.row]]), int(primitives[at.row]), at.normal, at.radius)
+            for kind, primitives, rows in self._by_kind
+            for at in kind.contacts(point, rows)
+        ]
+        return sorted(found, key=lambda contact: contact.primitive)
 
     def is_on_body(self, point: Numbers, contact: Contact) -> bool:
         """Whether a point is on the body, and not in a face's plane beside the face."""
-        return contact.radius > 0 or within(point, self._rows[self._object == contact.object])
+        surface = self._surfaces[contact.object]
+        return surface.kind.contains(point, _rows(surface.shape.given))
+
+
+def _rows(rows: Any) -> Numbers:
+    return np.array(rows, dtype=np.float64).reshape(-1, 4)
 
 
 class LightContacts:
@@ -69,38 +78,38 @@ class LightContacts:
         self.objects = {contact.object for contact in found}
         """The objects that some light lies on."""
         self._end = column(mi.UInt32, np.cumsum([len(of_one) for of_one in by_light], dtype=np.uint32))
-        self._record = column(mi.UInt32, [contact.record for contact in found])
+        self._primitive = column(mi.UInt32, [contact.primitive for contact in found])
         self._rows = column(types.Float, [number for c in found for number in (*c.normal, c.radius)] or [0.0] * 4)
 
     @dr.syntax
-    def lies_at(self, light: Any, record: Any, d: Any, t: Any, distance: Any, active: Any) -> Any:
-        """Whether a ray that leads to a light at `distance` and meets a record at `t` meets it where the light is.
+    def lies_at(self, light: Any, primitive: Any, d: Any, t: Any, distance: Any, active: Any) -> Any:
+        """Whether a ray that leads to a light at `distance` and meets a primitive at `t` meets it where the light is.
 
         A plane that the light lies on is met there and nowhere else; a sphere is, if not there, then nearer by
         2 r |n . d|, with n its normal at the light.
         """
         result = mi.Bool(False)
         if dr.hint(bool(self.objects), mode="scalar"):
-            result = dr.full(mi.Bool, False, dr.width(record, t, active))
+            result = dr.full(mi.Bool, False, dr.width(primitive, t, active))
             i, end = self._range(light, active)
             while active & (i < end):
                 row = dr.gather(self._types.Vector4, self._rows, i, active)
                 slack = row.w * dr.abs(dr.dot(self._types.Vector3(row.xyz), d))
                 there = (row.w == 0) | (t > distance - slack)
-                result |= there & (record == dr.gather(mi.UInt32, self._record, i, active))
+                result |= there & (primitive == dr.gather(mi.UInt32, self._primitive, i, active))
                 i += 1
         return result
 
     @dr.syntax
-    def grazes(self, light: Any, record: Any, active: Any) -> Any:
-        """Whether a record is a plane that a light lies in, and so shines along."""
+    def grazes(self, light: Any, primitive: Any, active: Any) -> Any:
+        """Whether a primitive is a plane that a light lies in, and so shines along."""
         result = mi.Bool(False)
         if dr.hint(bool(self.objects), mode="scalar"):
-            result = dr.full(mi.Bool, False, dr.width(record, active))
+            result = dr.full(mi.Bool, False, dr.width(primitive, active))
             i, end = self._range(light, active)
             while active & (i < end):
                 radius = dr.gather(self._types.Float, self._rows, 4 * i + 3, active)
-                result |= (radius == 0) & (record == dr.gather(mi.UInt32, self._record, i, active))
+                result |= (radius == 0) & (primitive == dr.gather(mi.UInt32, self._primitive, i, active))
                 i += 1
         return result
 
@@ -131,5 +140,5 @@ class EyeContact:
         for normal in self._normals:
             leads_inside &= dr.dot(normal, ray.d) < bound
         width = dr.width(ray.d)
-        index, record = (dr.opaque(mi.UInt32, number, width) for number in (contact.object, contact.record))
-        return Ray(ray.o, ray.d, index, record, leads_inside, ray.t_min, ray.spread)
+        index, primitive = (dr.opaque(mi.UInt32, number, width) for number in (contact.object, contact.primitive))
+        return Ray(ray.o, ray.d, index, primitive, leads_inside, ray.t_min, ray.spread)
