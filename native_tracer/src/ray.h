@@ -50,7 +50,7 @@ struct Group {
 
 // Calls visit(field) for all that is known of a group's rays.
 template <typename Group, typename Visit>
-[[gnu::always_inline]] inline void for_each_field(Group& group, Visit visit) {
+[[gnu::always_inline]] constexpr void for_each_field(Group& group, Visit visit) {
     for (auto* vector : {&group.rays.origin, &group.rays.direction}) {
         visit(vector->x);
         visit(vector->y);
@@ -115,7 +115,13 @@ class RayStack {
     struct Cell {
         Real value;  // or an integer
     };
-    static constexpr std::size_t fields = 15;
+    // As many as for_each_field() visits.
+    static constexpr std::size_t fields = [] {
+        Group<Real> group;
+        std::size_t number = 0;
+        for_each_field(group, [&](const auto&) { ++number; });
+        return number;
+    }();
 
     // Makes room for so many rays, and for a whole group behind them.
     void reserve(std::size_t rays) {
