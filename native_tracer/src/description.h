@@ -58,9 +58,11 @@ struct PolyhedronDescription {
     std::vector<Quadruple> planes;  // a, b, c, d of a x + b y + c z + d <= 0
 };
 
+using ShapeDescription = std::variant<SphereDescription, PolyhedronDescription>;
+
 struct ObjectDescription {
     int pigment, finish;
-    std::variant<SphereDescription, PolyhedronDescription> shape;
+    ShapeDescription shape;
 };
 
 struct SceneDescription {

@@ -40,7 +40,7 @@ class PrimaryRays {
             camera_.directions(columns + L(offset(sample_ % grid_)), rows + L(offset(sample_ / grid_)));
         group.rays.t_min = camera_.eye_error();
         group.rays.object = contact_.object;
-        group.rays.patch = contact_.patch;
+        group.rays.primitive = contact_.primitive;
         group.rays.inside = contact_.leads_inside(group.rays.direction, camera_.eye_error(), camera_.spread());
         group.rays.spread = camera_.spread();
         group.rays.reach = reach_;

@@ -58,9 +58,8 @@ class Recorder {
             RayRecord& record = tree_[index];
             record.t = static_cast<double>(hits.t[lane]);
             record.object = hits.object[lane];
-            if (!scene.patches[static_cast<std::size_t>(hits.patch[lane])].round) {
-                record.plane = hits.patch[lane] - scene.objects[static_cast<std::size_t>(record.object)].first_patch;
-            }
+            record.plane = scene.shapes.visit(scene.objects[static_cast<std::size_t>(record.object)].shape,
+                                              [&](const auto& shape) { return shape.piece(hits.primitive[lane]); });
             record.inside = hits.inside[lane];
             record.point = triple(lane_of(surface.point, lane));
             record.normal = triple(lane_of(surface.outward, lane));

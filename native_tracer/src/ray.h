@@ -17,7 +17,7 @@ template <typename Real>
 struct Rays {
     Vector<Lanes<Real>> origin, direction;  // directions are unit vectors
     Lanes<Real> t_min;                      // how far the origin may be off; a hit on anything but `object` is farther
-    Indices<Real> object, patch;            // what the ray starts on; -1: nothing
+    Indices<Real> object, primitive;        // what the ray starts on; -1: nothing
     Mask<Real> inside;                      // it travels inside `object`
     Lanes<Real> spread;                     // how far the direction may be off, see rounding.h
     Lanes<Real> reach;                      // no coordinate of the origin is larger
@@ -58,7 +58,7 @@ template <typename Group, typename Visit>
     }
     visit(group.rays.t_min);
     visit(group.rays.object);
-    visit(group.rays.patch);
+    visit(group.rays.primitive);
     visit(group.rays.inside);
     visit(group.rays.spread);
     visit(group.weight);

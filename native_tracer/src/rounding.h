@@ -7,7 +7,7 @@
 //
 //     Rays::t_min      how far the origin may be off
 //     Rays::spread     how far the direction may be off, in each component, and by how much its products may
-//     Patch::error_at  how far a surface may be off
+//     error_at         how far a shape's primitive may be off
 //
 // A ray at distance t is off by t_min + t spread, and with it everything that it meets. The spread grows from bounce to
 // bounce; where it exceeds `most_blur`, nothing is known that a rule could be applied to.

@@ -1,14 +1,13 @@
 #include "search.h"
 
 #include <algorithm>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
 #include <optional>
 #include <variant>
 
-#include "polyhedron_box.h"
+#include "bounds.h"
 
 namespace whitted {
 
@@ -16,18 +15,17 @@ namespace {
 
 constexpr std::uint32_t leaf_size = 4;
 
-// From so much work for a ray on, in tests of spheres, each of which costs about as much as two planes of a polyhedron,
-// a tree is faster than testing all objects. Measured on scattered balls and blocks and on small scenes, in float and
-// double: below 16 a tree was up to a fifth slower, above 26 up to a tenth, and faster in all but one.
-constexpr double least_work_of_a_tree = 24;
+// From such a cost of a ray on, see bounds.h, a tree is faster than testing all objects. Measured on scattered balls
+// and blocks and on small scenes, in float and double: below 16 a tree was up to a fifth slower, above 26 up to a
+// tenth, and faster in all but one.
+constexpr double least_cost_of_a_tree = 24;
 
-double work_of(const SceneDescription& scene) {
-    double work = 0;
+double cost_of(const SceneDescription& scene) {
+    double cost = 0;
     for (const ObjectDescription& object : scene.objects) {
-        const auto* polyhedron = std::get_if<PolyhedronDescription>(&object.shape);
-        work += polyhedron != nullptr ? 0.5 * static_cast<double>(polyhedron->planes.size()) : 1;
+        cost += std::visit([](const auto& shape) { return whitted::cost_of(shape); }, object.shape);
     }
-    return work;
+    return cost;
 }
 
 // An object whose planes meet at so sharp an angle that the rounding of the given precision moves their edge by more
@@ -40,33 +38,18 @@ double epsilon_of(Precision precision) {
                                           : std::numeric_limits<double>::epsilon();
 }
 
-std::optional<PolyhedronBox> box_of(const SphereDescription& sphere) {
-    PolyhedronBox result{{}, 1, 0};
-    for (std::size_t k = 0; k < 3; ++k) {
-        constexpr double infinity = std::numeric_limits<double>::infinity();
-        result.box.low[k] = std::nextafter(sphere.center[k] - sphere.radius, -infinity);
-        result.box.high[k] = std::nextafter(sphere.center[k] + sphere.radius, infinity);
-        if (!std::isfinite(result.box.low[k]) || !std::isfinite(result.box.high[k])) {
-            return std::nullopt;
-        }
-    }
-    return result;
-}
-
 }  // namespace
 
 SearchPlan plan_search(const SceneDescription& scene, Search search, Precision precision) {
     SearchPlan plan;
     const bool wants_tree =
-        search == Search::bvh || (search == Search::automatic && work_of(scene) >= least_work_of_a_tree);
+        search == Search::bvh || (search == Search::automatic && cost_of(scene) >= least_cost_of_a_tree);
     std::vector<Box> boxes;
     std::vector<std::uint32_t> objects;
     for (std::size_t i = 0; i < scene.objects.size(); ++i) {
-        std::optional<PolyhedronBox> found;
+        std::optional<Bounds> found;
         if (wants_tree) {
-            const auto& shape = scene.objects[i].shape;
-            const auto* sphere = std::get_if<SphereDescription>(&shape);
-            found = sphere != nullptr ? box_of(*sphere) : box_of(std::get<PolyhedronDescription>(shape).planes);
+            found = std::visit([](const auto& shape) { return bounds_of(shape); }, scene.objects[i].shape);
         }
         if (!found || 32 * epsilon_of(precision) * found->growth > most_blur) {
             plan.apart.push_back(static_cast<int>(i));

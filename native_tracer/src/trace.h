@@ -134,43 +134,26 @@ template <typename Real, typename Observer>
 Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const Hits<Real>& hits) const {
     const Vector<L> p = rays.origin + hits.t * rays.direction;
     const Mask<Real> hit = hits.object >= 0;
-    const L zero = Real(0);
-    const L one = Real(1);
 
-    // Neighbouring rays mostly hit the same patch: then there is nothing to select.
+    // Neighbouring rays mostly hit the same primitive: then there is nothing to select.
     Surface<Real> result, another;
     bool first = true;
-    for_each_distinct(hits.patch, hit, [&](int index, int lane, Mask<Real> same) {
-        const Patch<Real>& patch = scene_.patches[static_cast<std::size_t>(index)];
+    for_each_distinct(hits.primitive, hit, [&](int primitive, int lane, Mask<Real> same) {
         const Object<Real>& object = scene_.objects[static_cast<std::size_t>(hits.object[lane])];
         Surface<Real>& surface = first ? result : another;
         surface.hit = hit;
 
-        // The point is moved onto the surface, so that its error does not grow with the distance travelled.
-        const Vector<L> anchor(patch.anchor);
-        const L size = patch.size;
-        if (patch.round) {
-            const Vector<L> arm = p - anchor;
-            const L length2 = dot(arm, arm);
-            surface.outward = arm * (one / sqrt(length2));
-            // Of a sphere that is too small beside the distance travelled, the point is the centre itself, or so near
-            // that its square is 0. The normal may then be any that the ray can meet: it is taken along the ray.
-            const Mask<Real> lost = length2 <= zero;
-            if (any(lost)) [[unlikely]] {
-                const Vector<L> along = select(hits.inside, rays.direction, -rays.direction);
-                surface.outward = select(lost, along, surface.outward);
-            }
-            surface.point = anchor + size * surface.outward;
-        } else {
-            surface.outward = anchor;
-            surface.point = p - (dot(anchor, p) + size) * anchor;
-        }
+        const auto moved = scene_.shapes.visit(object.shape, [&](const auto& shape) __attribute__((always_inline)) {
+            return shape.surface_at(primitive, p, rays, hits.inside);
+        });
+        surface.point = moved.point;
+        surface.outward = moved.outward;
         surface.normal = select(hits.inside, -surface.outward, surface.outward);
         const L reach = max_norm(surface.point);
         surface.error = rounding_error(reach, hits.t);
-        surface.lean = L(patch.curvature) * surface.error;
+        surface.lean = L(moved.curvature) * surface.error;
 
-        const L off = rays.t_min + patch.error_at(rays.reach) + hits.t * rays.spread;
+        const L off = rays.t_min + moved.error + hits.t * rays.spread;
         const L blur = L(most_blur<Real>) * (reach + hits.t);
         surface.pigment = color_at(*object.pigment, {surface.point, surface.outward, rays.direction, off, blur});
         const Finish<Real>& finish = object.finish;
@@ -203,8 +186,8 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
         return color;
     }
     // Shadow rays start on the viewer's side of the surface, as the reflected ray does.
-    Rays<Real> shadow_rays{surface.point, surface.normal, surface.error,         hits.object,
-                           hits.patch,    hits.inside,    L(least_spread<Real>), reach_of(surface.error)};
+    Rays<Real> shadow_rays{surface.point,  surface.normal, surface.error,         hits.object,
+                           hits.primitive, hits.inside,    L(least_spread<Real>), reach_of(surface.error)};
     const L point_error = L(tie_epsilon<Real> / (4 * input_epsilon<Real>)) * surface.error;
     for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
         const Light<Real>& light = scene_.lights[i];
@@ -215,7 +198,7 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
         const L cosine = dot(surface.normal, to_light);
         // A surface is not lit along itself, nor by a light at the very point.
         const Mask<Real> faces =
-            answers & (cosine > L(least_spread<Real>)) & (distance > point_error) & ~light.grazes(hits.patch);
+            answers & (cosine > L(least_spread<Real>)) & (distance > point_error) & ~light.grazes(hits.primitive);
 
         Indices<Real> blocker = -1;
         if (any(faces)) {
@@ -252,7 +235,7 @@ auto Tracer<Real, Observer>::highlight(const Rays<Real>& rays, const Hits<Real>&
     const L base = blinn_ ? dot(surface.normal, normalize(to_light + to_viewer))
                           : dot(L(2) * cosine * surface.normal - to_light, to_viewer);
     L result = Real(0);
-    for_each_distinct(hits.patch, wanted, [&](int, int lane, Mask<Real> same) {
+    for_each_distinct(hits.primitive, wanted, [&](int, int lane, Mask<Real> same) {
         // A cosine that is rounded above 1 has powers without bounds.
         result = select(same, power(min(max(base, L(Real(0))), L(Real(1))), surface.alpha[lane]), result);
     });
@@ -311,7 +294,7 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
     successors.rays.origin = surface.point;
     successors.rays.t_min = surface.error;
     successors.rays.object = hits.object;
-    successors.rays.patch = hits.patch;
+    successors.rays.primitive = hits.primitive;
     successors.depth = group.depth + Indices<Real>(1);
     successors.pixel = group.pixel;
     successors.record = group.record;

@@ -15,6 +15,7 @@
 #include "ray.h"
 #include "rounding.h"
 #include "search.h"
+#include "shapes.h"
 #include "vector.h"
 
 namespace whitted::WHITTED_ISA {
@@ -22,10 +23,9 @@ namespace whitted::WHITTED_ISA {
 template <typename Real>
 struct TreeNode {
     Vector<Real> low, high;
-    int children;  // the first of two neighbours; 0: it is a leaf
-    int axis;      // along which the first child lies before the second
-    // A leaf's objects, in the scene's lists.
-    int first_sphere, end_sphere, first_polyhedron, end_polyhedron;
+    int children;                          // the first of two neighbours; 0: it is a leaf
+    int axis;                              // along which the first child lies before the second
+    typename Shapes<Real>::Ranges shapes;  // of a leaf
 };
 
 // Where rays are in boxes: all that does not depend on the box.
@@ -82,7 +82,7 @@ class Tree {
  public:
     using L = Lanes<Real>;
 
-    // Without its leaves' objects, which are put into its nodes afterwards.
+    // Without its leaves' shapes, which are put into its nodes afterwards.
     explicit Tree(const SearchPlan& plan)
         : growth_(static_cast<Real>(plan.growth)), reach_(static_cast<Real>(plan.reach)) {
         nodes_.reserve(plan.tree.nodes.size());
@@ -90,8 +90,11 @@ class Tree {
             const auto corner = [](const std::array<double, 3>& p) {
                 return Vector<Real>{static_cast<Real>(p[0]), static_cast<Real>(p[1]), static_cast<Real>(p[2])};
             };
-            nodes_.push_back({corner(node.box.low), corner(node.box.high), static_cast<int>(node.children),
-                              static_cast<int>(node.axis), 0, 0, 0, 0});
+            nodes_.push_back({corner(node.box.low),
+                              corner(node.box.high),
+                              static_cast<int>(node.children),
+                              static_cast<int>(node.axis),
+                              {}});
         }
     }
 

@@ -8,7 +8,7 @@
 //
 // Chvatal, "Linear Programming", 1983, chapter 10.
 
-#include "polyhedron_box.h"
+#include "bounds.h"
 
 #include <algorithm>
 #include <array>
@@ -127,16 +127,16 @@ class Basis {
 
 }  // namespace
 
-std::optional<PolyhedronBox> box_of(std::span<const Quadruple> quadruples) {
+std::optional<Bounds> bounds_of(const PolyhedronDescription& polyhedron) {
     std::vector<Plane> planes;
     double far = 0;
-    for (const Quadruple& quadruple : quadruples) {
-        planes.push_back(plane_of(quadruple));
+    for (const Quadruple& plane : polyhedron.planes) {
+        planes.push_back(plane_of(plane));
         far = std::max(far, std::abs(planes.back().height));
     }
     far = far > 0 ? 0x1p24 * far : 1;
 
-    PolyhedronBox result{{}, 1, 0};
+    Bounds result{{}, 1, 0};
     Vec residuals[6];
     double size = 0;  // of the farthest coordinate
     for (std::size_t side = 0; side < 6; ++side) {
