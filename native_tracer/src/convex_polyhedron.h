@@ -42,19 +42,6 @@ Plane<Real> plane_of(const Quadruple& plane) {
     return {normal / length(normal), offset, slack * std::abs(offset), slack};
 }
 
-// The ray is inside all half-spaces between the largest t at which it enters one and the smallest at which it leaves
-// one. Planes may be few and close no volume: either bound may stay infinite.
-// Haines, "Fast Ray-Convex Polyhedron Intersection", Graphics Gems II, 1991.
-template <typename Real>
-struct Passage {
-    using L = Lanes<Real>;
-    L enter = -std::numeric_limits<Real>::infinity();
-    L leave = std::numeric_limits<Real>::infinity();
-    Indices<Real> enter_primitive = -1;
-    Indices<Real> leave_primitive = -1;
-    Mask<Real> misses;
-};
-
 // A convex polyhedron has no sight of its own: it is tested from anywhere.
 template <typename Real>
 struct AlwaysInSight {
@@ -98,6 +85,9 @@ class ConvexPolyhedron {
         return T(plane.error) + T(plane.error_by_reach) * reach;
     }
 
+    // The ray is inside all half-spaces between the largest t at which it enters one and the smallest at which it
+    // leaves one. Planes may be few and close no volume: either bound may stay infinite. Haines, "Fast Ray-Convex
+    // Polyhedron Intersection", Graphics Gems II, 1991.
     template <bool which_primitive>
     [[gnu::always_inline]] bool intersect(const Rays<Real>& rays, Crossing<Real>& crossing, Mask<Real>& close) const {
         const L zero = Real(0);
@@ -119,16 +109,16 @@ class ConvexPolyhedron {
             pass<Start::mixed, which_primitive>(rays, passage, between_planes, close);
         }
         // Later planes only bring the ends of the passage farther apart.
-        const L gap = passage.enter - passage.leave;
+        const L gap = passage.near - passage.far;
         const Mask<Real> at_edge =
-            (gap > zero) & (gap <= L(most_blur<Real>) * (rays.reach + passage.enter)) & ~elsewhere;
+            (gap > zero) & (gap <= L(most_blur<Real>) * (rays.reach + passage.near)) & ~elsewhere;
         if (any(at_edge)) [[unlikely]] {
             close |= at_edge;
         }
         if (all(passage.misses)) {
             return false;
         }
-        crossing = crossing_of(passage, rays, from_within);
+        crossing = first_crossing(passage, rays, from_within);
         if constexpr (which_primitive) {
             close |= (between_planes < L(most_blur<Real>) * (rays.reach + crossing.t)) & (crossing.t < infinity);
         }
@@ -156,19 +146,19 @@ class ConvexPolyhedron {
             const L t_error = (error + abs(t) * rays.spread) / abs(slope);
 
             const Mask<Real> along = abs(slope) <= rays.spread;
-            const Mask<Real> enters_last = ~along & (slope < zero) & (t > passage.enter);
+            const Mask<Real> enters_last = ~along & (slope < zero) & (t > passage.near);
             const Mask<Real> leaves_first =
-                ~along & (slope > zero) & (t < passage.leave) & ~(from_within & (rays.primitive == primitive));
-            passage.enter = select(enters_last, t, passage.enter);
-            passage.leave = select(leaves_first, t, passage.leave);
-            passage.enter_primitive = select(enters_last, primitive, passage.enter_primitive);
-            passage.leave_primitive = select(leaves_first, primitive, passage.leave_primitive);
+                ~along & (slope > zero) & (t < passage.far) & ~(from_within & (rays.primitive == primitive));
+            passage.near = select(enters_last, t, passage.near);
+            passage.far = select(leaves_first, t, passage.far);
+            passage.near_primitive = select(enters_last, primitive, passage.near_primitive);
+            passage.far_primitive = select(leaves_first, primitive, passage.far_primitive);
             enter_error = select(enters_last, t_error, enter_error);
             leave_error = select(leaves_first, t_error, leave_error);
             passage.misses |= along & (height > error) & ~from_within;
         }
-        passage.misses |= (passage.enter - passage.leave > enter_error + leave_error) & ~from_within;
-        crossing = crossing_of(passage, rays, from_within);
+        passage.misses |= (passage.near - passage.far > enter_error + leave_error) & ~from_within;
+        crossing = first_crossing(passage, rays, from_within);
         return true;
     }
 
@@ -236,24 +226,23 @@ class ConvexPolyhedron {
             const Mask<Real> entering = slope < zero;
             if constexpr (which_primitive) {
                 // No number before the first plane.
-                const L before =
-                    start == Start::within ? passage.leave : select(entering, passage.enter, passage.leave);
+                const L before = start == Start::within ? passage.far : select(entering, passage.near, passage.far);
                 between_planes = min(abs(t - before), between_planes);
             }
-            Mask<Real> leaves_first = ~entering & (t < passage.leave);
+            Mask<Real> leaves_first = ~entering & (t < passage.far);
             if constexpr (start != Start::elsewhere) {
                 leaves_first &= ~(from_within & (rays.primitive == primitive));
             }
-            passage.leave = select(leaves_first, t, passage.leave);
-            passage.leave_primitive = select(leaves_first, primitive, passage.leave_primitive);
+            passage.far = select(leaves_first, t, passage.far);
+            passage.far_primitive = select(leaves_first, primitive, passage.far_primitive);
             if constexpr (start == Start::within) {
                 continue;
             }
-            const Mask<Real> enters_last = entering & (t > passage.enter);
-            passage.enter = select(enters_last, t, passage.enter);
-            passage.enter_primitive = select(enters_last, primitive, passage.enter_primitive);
+            const Mask<Real> enters_last = entering & (t > passage.near);
+            passage.near = select(enters_last, t, passage.near);
+            passage.near_primitive = select(enters_last, primitive, passage.near_primitive);
 
-            Mask<Real> misses = (passage.enter > passage.leave) | (passage.leave < rays.t_min);
+            Mask<Real> misses = (passage.near > passage.far) | (passage.far < rays.t_min);
             if constexpr (start == Start::mixed) {
                 misses &= ~from_within;
             }
@@ -262,17 +251,6 @@ class ConvexPolyhedron {
                 return;
             }
         }
-    }
-
-    // Where rays that have the given passage cross the polyhedron; those `from_within` start on it.
-    static Crossing<Real> crossing_of(const Passage<Real>& passage, const Rays<Real>& rays, Mask<Real> from_within) {
-        const L zero = Real(0);
-        const L infinity = std::numeric_limits<Real>::infinity();
-        const Mask<Real> enters = (passage.enter > rays.t_min) & ~from_within;
-        const L leave =
-            select(from_within, max(passage.leave, zero), select(passage.leave > rays.t_min, passage.leave, infinity));
-        return {select(passage.misses, infinity, select(enters, passage.enter, leave)),
-                select(enters, passage.enter_primitive, passage.leave_primitive), ~enters};
     }
 
     int plane_count() const { return static_cast<int>(planes_.size()); }

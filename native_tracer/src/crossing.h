@@ -12,11 +12,23 @@
 #pragma once
 
 #include <cmath>
+#include <limits>
 
 #include "ray.h"
 #include "vector.h"
 
 namespace whitted::WHITTED_ISA {
+
+// The up to two places where lines meet a shape, near and far, and what they meet there: they are in it between them.
+// Where there is none it is infinite. Of rays that start on the shape from within, `far` is the other end.
+template <typename Real>
+struct Passage {
+    Lanes<Real> near = -std::numeric_limits<Real>::infinity();
+    Lanes<Real> far = std::numeric_limits<Real>::infinity();
+    Indices<Real> near_primitive = -1;
+    Indices<Real> far_primitive = -1;
+    Mask<Real> misses;
+};
 
 // Where rays cross one object.
 template <typename Real>
@@ -25,6 +37,19 @@ struct Crossing {
     Indices<Real> primitive;
     Mask<Real> inside;  // the surface is met from within
 };
+
+// Which of the two counts for rays that have the given passage through a shape; those `from_within` start on it.
+template <typename Real>
+[[gnu::always_inline]] inline Crossing<Real> first_crossing(const Passage<Real>& passage, const Rays<Real>& rays,
+                                                            Mask<Real> from_within) {
+    using L = Lanes<Real>;
+    const L infinity = std::numeric_limits<Real>::infinity();
+    const Mask<Real> enters = (passage.near > rays.t_min) & ~from_within;
+    const L far =
+        select(from_within, max(passage.far, L(Real(0))), select(passage.far > rays.t_min, passage.far, infinity));
+    return {select(passage.misses, infinity, select(enters, passage.near, far)),
+            select(enters, passage.near_primitive, passage.far_primitive), ~enters};
+}
 
 // Points moved onto a primitive.
 template <typename Real>

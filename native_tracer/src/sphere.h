@@ -54,7 +54,6 @@ class Sphere {
     template <bool which_primitive>
     [[gnu::always_inline]] bool intersect(const Rays<Real>& rays, Crossing<Real>& crossing, Mask<Real>&) const {
         const L zero = Real(0);
-        const L infinity = std::numeric_limits<Real>::infinity();
 
         const Vector<L> g = Vector<L>(center_) - rays.origin;
         const L closest = dot(g, rays.direction);  // where the ray passes the centre
@@ -79,20 +78,15 @@ class Sphere {
         const L root = sqrt(max(discriminant, zero));
         const L q = closest + select(closest >= zero, root, -root);
         const L other = (dot(g, g) - radius2) / q;
-        const L near = min(q, other);
-        const L far = max(q, other);
-        const Mask<Real> enters = near > rays.t_min;
-        const L t = select(enters, near, select(far > rays.t_min, far, infinity));
-        crossing.t = select(discriminant > touching, t, infinity);
-        crossing.primitive = primitive_;
-        crossing.inside = ~enters;
+        Passage<Real> passage{min(q, other), max(q, other), primitive_, primitive_, ~(discriminant > touching)};
+        const Mask<Real> from_within = starts_here & rays.inside;
         if (any(starts_here)) {
             // With the origin on the sphere, the roots are 0 and 2 g.d, and only the second, from within, is a hit.
             const L through = closest + closest;
-            const L own = select(left_outward | (through <= zero), infinity, through);
-            crossing.t = select(starts_here, own, crossing.t);
-            crossing.inside |= starts_here;
+            passage.far = select(from_within, through, passage.far);
+            passage.misses = select(starts_here, left_outward | (through <= zero), passage.misses);
         }
+        crossing = first_crossing(passage, rays, from_within);
         return true;
     }
 
