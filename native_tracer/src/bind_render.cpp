@@ -147,7 +147,7 @@ nb::dict trace_pixel(const SceneDescription& scene, int width, int height, int x
     }
     std::array<float, 3> color;
     RayTree tree;
-    make_kernel(scene, settings)->trace_pixel(x, y, color.data(), tree);
+    record_pixel(scene, settings, x, y, color.data(), tree);
     const std::vector<RayRecord>& rays = tree.records();
 
     std::vector<nb::dict> nodes(rays.size());

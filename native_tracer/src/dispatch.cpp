@@ -17,6 +17,10 @@ struct Variant {
     Make make;
 };
 
+SearchPlan plan_of(const SceneDescription& scene, const RenderSettings& settings) {
+    return plan_search(scene, settings.search, settings.precision);
+}
+
 }  // namespace
 
 // Here, so that no compilation for a newer processor provides them.
@@ -34,11 +38,16 @@ std::unique_ptr<Kernel> make_kernel(const SceneDescription& scene, const RenderS
     };
     for (const Variant& variant : variants) {
         if (variant.available && (instructions.empty() || instructions == variant.name)) {
-            return std::unique_ptr<Kernel>(
-                variant.make(scene, settings, plan_search(scene, settings.search, settings.precision)));
+            const Make make = settings.precision == Precision::extended ? baseline::make_extended_kernel : variant.make;
+            return std::unique_ptr<Kernel>(make(scene, settings, plan_of(scene, settings)));
         }
     }
     throw std::invalid_argument("this processor or this build has no '" + std::string(instructions) + "' instructions");
+}
+
+void record_pixel(const SceneDescription& scene, const RenderSettings& settings, int column, int row, float* color,
+                  RayTree& tree) {
+    baseline::record_pixel(scene, settings, plan_of(scene, settings), column, row, color, tree);
 }
 
 }  // namespace whitted

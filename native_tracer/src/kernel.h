@@ -29,23 +29,28 @@ class Kernel {
     virtual bool trace_tile(const Tile& tile, float* picture, RayCounts& counts,
                             const std::atomic<bool>& stop) const = 0;
 
-    // Traces one pixel, with its rays put into `tree` and its colour, as trace_tile would leave it, into `color`.
-    virtual void trace_pixel(int column, int row, float* color, RayTree& tree) const = 0;
-
     // Whether the objects are searched by a tree.
     virtual bool uses_tree() const = 0;
 };
 
 // `instructions` is "baseline", "avx2" or "avx512"; empty: the best that this processor has. Throws
-// std::invalid_argument if it has not, or if the program was not compiled for it. The kernel refers to the
-// description's textures and must not outlive it.
+// std::invalid_argument if it has not, or if the program was not compiled for it. Long double knows no other than
+// "baseline", and takes that whatever is named. The kernel refers to the description's textures and must not outlive
+// it.
 std::unique_ptr<Kernel> make_kernel(const SceneDescription& scene, const RenderSettings& settings,
                                     std::string_view instructions = {});
 
-// Each is kernel.cpp, compiled for one instruction set.
+// Traces one pixel, with its rays put into `tree` and its colour, as trace_tile would leave it, into `color`.
+void record_pixel(const SceneDescription& scene, const RenderSettings& settings, int column, int row, float* color,
+                  RayTree& tree);
+
+// Each is kernel.cpp, compiled for one instruction set; the baseline has more, see baseline.cpp.
 namespace baseline {
 Kernel* make_kernel(const SceneDescription& scene, const RenderSettings& settings, const SearchPlan& plan);
-}
+Kernel* make_extended_kernel(const SceneDescription& scene, const RenderSettings& settings, const SearchPlan& plan);
+void record_pixel(const SceneDescription& scene, const RenderSettings& settings, const SearchPlan& plan, int column,
+                  int row, float* color, RayTree& tree);
+}  // namespace baseline
 namespace avx2 {
 Kernel* make_kernel(const SceneDescription& scene, const RenderSettings& settings, const SearchPlan& plan);
 }
