@@ -10,19 +10,19 @@ from typing import Any
 
 from finite import assert_finite
 
+from converter.analysis.cutoff import cutoff_bound
+from converter.analysis.notices import scene_notices
 from converter.commands import main, raytrace
+from converter.errors import ExportError
 from converter.images import ppm
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
-from converter.scene.cutoff import cutoff_bound
 from converter.scene.errors import SceneError
 from converter.scene.model import Scene
 from converter.scene.needs import scene_needs
-from converter.scene.notices import scene_notices
 from converter.scene.parser import parse_scene
 from converter.scene.settings import Settings
-from converter.to_mitsuba.export import ExportError
-from converter.to_mitsuba.polyhedra import PolyhedronError
+from converter.to_mitsuba.meshes import PolyhedronError
 from converter.to_mitsuba.scene import scene_description
 from converter.to_povray.scene import povray_scene
 

@@ -35,10 +35,10 @@ with atheris.instrument_imports(include=["converter"]):
     import checks
 
     from converter.images import ppm
-    from converter.scene.entries import KEYWORDS
     from converter.scene.geometry import check_geometry
     from converter.scene.model import Texmap
     from converter.scene.parser import load_scene
+    from converter.scene.reader import KEYWORDS
 
 MEASURED, BY_MITSUBA, BY_PROGRAMS = 16, 32, 64
 """One of so many inputs has its memory measured, is drawn by Mitsuba, if it is a scene, or is given to the programs."""

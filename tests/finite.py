@@ -5,7 +5,7 @@ from typing import Any
 
 import numpy as np
 
-from converter.scene.cutoff import cutoff_bound
+from converter.analysis.cutoff import cutoff_bound
 from converter.scene.model import Checker, Finish, Light, Scene, Solid
 from converter.scene.settings import Settings
 

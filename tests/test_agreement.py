@@ -121,14 +121,14 @@ def test_pixel_trees_agree(mi, small_scene, intersections):
     for x, y in ((27, 18), (13, 15), (22, 12), (20, 29)):
         native = NativeRenderer().trace_pixel(small_scene, settings, x, y)
         mitsuba = renderer.trace_pixel(small_scene, settings, x, y)
-        assert mitsuba["color"] == pytest.approx(picture[y, x], abs=1e-5)
-        assert mitsuba["color"] == pytest.approx(native["color"], abs=1e-5)
-        assert [*map(_skeleton, mitsuba["rays"])] == [*map(_skeleton, native["rays"])]
+        assert mitsuba.color == pytest.approx(picture[y, x], abs=1e-5)
+        assert mitsuba.color == pytest.approx(native.color, abs=1e-5)
+        assert [*map(_skeleton, mitsuba.rays)] == [*map(_skeleton, native.rays)]
 
 
 def _skeleton(ray):
     """What of a ray and those below it has no digits."""
-    hit = ray["hit"]
-    met = hit and (hit["object"], hit["plane"], hit["entering"], hit["total_reflection"])
-    shadows = hit and [(light["light"], light["cosine"] > 0, light["shadowed_by"] is None) for light in hit["lights"]]
-    return ray["kind"], ray["depth"], met, shadows, ray["dropped"], [*map(_skeleton, ray["children"])]
+    hit = ray.hit
+    met = hit and (hit.object, hit.plane, hit.entering, hit.total_reflection)
+    shadows = hit and [(light.light, light.cosine > 0, light.shadowed_by is None) for light in hit.lights]
+    return ray.kind, ray.depth, met, shadows, ray.dropped, [*map(_skeleton, ray.children)]

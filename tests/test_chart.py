@@ -573,7 +573,7 @@ def whitted(capsys):
 
 def test_chart(whitted, scene, tmp_path):
     svg, table, file = (tmp_path / name for name in ("a.svg", "a.csv", "a.json"))
-    options = ("--methods", "native,native-depth-1", "--size", "40x30", "--runs", 2, "--csv", table, "--json", file)
+    options = ("--methods", "native,native:max_depth=1", "--size", "40x30", "--runs", 2, "--csv", table, "--json", file)
     status, out, err = whitted("chart", scene, "-o", svg, *options)
     assert (status, err) == (0, "")
     lines = out.splitlines()
@@ -582,7 +582,7 @@ def test_chart(whitted, scene, tmp_path):
     assert "seconds of a whole process" in lines
     assert any(line.startswith("against native in long double, no cut-off, depth 64") for line in lines)
     assert svg.read_bytes().startswith(b"<?xml")
-    assert [line["method"] for line in csv.DictReader(table.open())] == ["native", "native-depth-1"]
+    assert [line["method"] for line in csv.DictReader(table.open())] == ["native", "native:max_depth=1"]
     assert len(json.loads(file.read_text())["scenes"][0]["methods"][0]["all_runs"]) == 2
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.csv", "a.json", "a.svg", "small.in"]
 
@@ -640,9 +640,7 @@ def chosen(*words):
 
 def test_which_methods_are_charted(monkeypatch):
     monkeypatch.setattr(Method, "missing", lambda self: None)
-    usual = [name for name in METHODS if name != "povray" and not name.startswith("native-depth-")]
-    assert [name for name in chosen() if not name.startswith("native-depth-")] == usual
-    assert [name[13:] for name in chosen() if name.startswith("native-depth-")] == ["1", "2", "4", "8", "16"]
+    assert chosen() == [name for name in METHODS if name != "povray"]
     assert chosen("--methods", "all") == [name for name in METHODS if name != "povray"]
     assert chosen("--methods", "mitsuba,native,mitsuba", "--vs", "povray") == ["mitsuba", "native", "povray"]
 

@@ -11,14 +11,14 @@ import pytest
 from converter.commands.main import main
 from converter.compare.classes import explain, less_exact
 from converter.compare.margins import (
-    Crossing,
-    crossings,
+    Intersection,
     edge_margin,
+    intersections,
     silhouette_margin,
     surface_margin,
     tie_margin,
-    tile_margin,
 )
+from converter.pigments import checker, solid
 from converter.renderers.methods import METHODS
 from converter.scene.model import Checker, Polyhedron, Solid, Sphere
 from converter.scene.parser import load_scene
@@ -82,10 +82,10 @@ def test_margins_of_places():
     d = np.array([-1.0, -1.0, 0.0]) / np.sqrt(2)
     o = np.array([1.0, 2.25, 0.0]) - 5 * d
     assert edge_margin(BOX, o, d) == pytest.approx(0.125)
-    assert tie_margin(Crossing(2.0, -1.0), Crossing(2.5, 0.5)) == pytest.approx(0.5 / 3)
-    assert [c.t for c in crossings(BALL, np.array(BALL.center), d)] == pytest.approx([-1.25, 1.25])
-    assert tile_margin(Checker((1, 1, 1), (0, 0, 0), 2.0), np.array([3.5, 1.1, 4.7])) == pytest.approx(0.5)
-    assert tile_margin(Solid((1, 1, 1)), np.array([0.0, 0.0, 0.0])) == np.inf
+    assert tie_margin(Intersection(2.0, -1.0), Intersection(2.5, 0.5)) == pytest.approx(0.5 / 3)
+    assert [c.t for c in intersections(BALL, np.array(BALL.center), d)] == pytest.approx([-1.25, 1.25])
+    assert checker.edge_margin(Checker((1, 1, 1), (0, 0, 0), 2.0), np.array([3.5, 1.1, 4.7])) == pytest.approx(0.5)
+    assert solid.edge_margin(Solid((1, 1, 1)), np.array([0.0, 0.0, 0.0])) == np.inf
 
 
 # ---- The gallery
@@ -172,7 +172,7 @@ def test_another_colour_is_not_explained():
 
 def test_rays_that_are_not_followed():
     scene, picture = reference(SCENES[[file.stem for file in SCENES].index("figure1")])
-    explanation = explained(scene, picture, METHODS["native-depth-1"], most=30)
+    explanation = explained(scene, picture, METHODS["native:max_depth=1"], most=30)
     assert explanation.counts() == {"ray not followed": 30}
 
 

@@ -278,7 +278,7 @@ def test_pixels_that_are_no_numbers_are_told(whitted, scene, tmp_path):
     scene.write_text(SCENE.replace("5 5 -9 .8 .8 .8 1 0 0", "5 5 -9 .8 .8 0 5e-324 0 0"))
     status, _, err = whitted("render", scene, tmp_path / "a.ppm", 8, 6, "--method", "native")
     assert status == 0
-    assert re.search(r"a\.ppm: \d+ of 48 pixels are no numbers \(NaN\): the colours there exceed all numbers", err)
+    assert re.search(r"a\.ppm: \d+ of 48 pixels are NaN: the colours there exceed all numbers", err)
     assert "NaN" not in whitted("render", scene, tmp_path / "a.ppm", 8, 6, "--method", "native", "--quiet")[2]
 
 
@@ -334,9 +334,9 @@ def test_options_become_settings(whitted, scene, tmp_path, monkeypatch, options,
         ("native", "double", {}),
         ("native-float", "float", {}),
         ("native-long-double", "long double", {}),
-        ("native-cutoff-64", "double", {"cutoff": 1 / 64}),
-        ("native-depth-3", "double", {"max_depth": 3}),
-        ("native-1-thread", "double", {"threads": 1}),
+        ("native:cutoff=1/64", "double", {"cutoff": 1 / 64}),
+        ("native:max_depth=3", "double", {"max_depth": 3}),
+        ("native:threads=1", "double", {"threads": 1}),
     ],
 )
 def test_a_method_is_a_renderer_with_settings(whitted, scene, tmp_path, monkeypatch, method, precision, settings):
@@ -372,9 +372,12 @@ def test_a_method_is_a_renderer_with_settings(whitted, scene, tmp_path, monkeypa
         (["--method", "nativ"], "argument --method: there is no method 'nativ' (did you mean 'native'?)"),
         (["--method", "native", "--variant", "auto"], "--variant is for Mitsuba, and native draws"),
         (["--method", "mitsuba-cuda", "--variant", "auto"], "--variant: the method mitsuba-cuda has its own"),
-        (["--method", "native-cutoff-64", "--cutoff", "0"], "--cutoff: the method native-cutoff-64 has its own"),
-        (["--method", "native-depth-2", "--max-depth", "2"], "--max-depth: the method native-depth-2 has its own"),
-        (["--method", "native-1-thread", "--threads", "1"], "--threads: the method native-1-thread has its own"),
+        (["--method", "native:cutoff=1/64", "--cutoff", "0"], "--cutoff: the method native:cutoff=1/64 has its own"),
+        (
+            ["--method", "native:max_depth=2", "--max-depth", "2"],
+            "--max-depth: the method native:max_depth=2 has its own",
+        ),
+        (["--method", "native:threads=1", "--threads", "1"], "--threads: the method native:threads=1 has its own"),
     ],
 )
 def test_render_usage(whitted, scene, tmp_path, options, message):
@@ -636,7 +639,7 @@ def test_inspect_json(whitted, scene, tmp_path):
             ".2 .6 .3 20 .2 0 0",
             "1 0 0 1 0 0 0",
             0.3,
-            "0.3: the bound is loose here; whitted compare --reference native-cutoff-4096",
+            "0.3: the bound is loose here; whitted compare --reference native:cutoff=1/4096",
         ),
         (
             "5 5 -9 .8 .8 .8 1 0 0",
@@ -705,7 +708,7 @@ def test_pixel_by_two_methods_of_one_initial(whitted, scene, monkeypatch):
 
     def wrong(self, *arguments):
         tree = right(self, *arguments)
-        tree["rays"][0]["hit"]["t"] += 0.25 if self.precision == "float" else 0.0
+        tree.rays[0].hit.t += 0.25 if self.precision == "float" else 0.0
         return tree
 
     monkeypatch.setattr(NativeRenderer, "trace_pixel", wrong)
@@ -742,7 +745,7 @@ def test_pixel_marks_and_tells_the_first_difference(whitted, scene, monkeypatch)
 
     def wrong(self, scene, settings, x, y):
         tree = NativeRenderer().trace_pixel(scene, settings, x, y)
-        tree["rays"][0]["hit"]["t"] += 0.25
+        tree.rays[0].hit.t += 0.25
         return tree
 
     monkeypatch.setattr(MitsubaRenderer, "trace_pixel", wrong)
@@ -750,7 +753,7 @@ def test_pixel_marks_and_tells_the_first_difference(whitted, scene, monkeypatch)
     marked = [line for line in out.splitlines() if line.startswith(">")]
     assert marked[0].startswith(">n primary")
     assert any(line.startswith(">m primary") for line in marked)
-    assert "first difference: the primary ray at depth 0 of weight 1\n" in out
+    assert "first difference: the primary ray at depth 0 of throughput 1\n" in out
     assert out.splitlines()[-1].startswith("t ")
 
 
@@ -773,11 +776,13 @@ def test_compare_both_renderers(whitted, scene, tmp_path, mi):
 
 
 def test_compare_other_methods(whitted, scene):
-    status, out, _ = whitted("compare", scene, 40, 30, "--method", "native-depth-1", "--reference", "native-cutoff-0")
+    status, out, _ = whitted(
+        "compare", scene, 40, 30, "--method", "native:max_depth=1", "--reference", "native:cutoff=0"
+    )
     assert status == 1
     assert out.splitlines()[:2] == [
-        "reference: native-cutoff-0, which is trusted",
-        "candidate: native-depth-1, 40 x 30 pixels",
+        "reference: native:cutoff=0, which is trusted",
+        "candidate: native:max_depth=1, 40 x 30 pixels",
     ]
 
 
@@ -830,7 +835,7 @@ def test_compare_images_of_different_sizes(whitted, images):
         (["small.in", "--limit", "-1"], "argument --limit: must not be negative"),
         (["small.in", "--method", "native"], "--reference and --method are both native: nothing to compare"),
         (["small.in", "--reference", "nativ"], "argument --reference: there is no method 'nativ'"),
-        (["small.in", "--reference", "native-cutoff-0", "--cutoff", "1"], "--cutoff: the method native-cutoff-0 has"),
+        (["small.in", "--reference", "native:cutoff=0", "--cutoff", "1"], "--cutoff: the method native:cutoff=0 has"),
         (
             ["small.in", "--method", "native-float", "--variant", "auto"],
             "for Mitsuba, and native and native-float draw",

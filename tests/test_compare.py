@@ -213,7 +213,7 @@ def tree():
         finishes=(glass,),
         objects=(Object(0, 0, Sphere((0, 0, 0), 1), line=12), Object(0, 0, Sphere((3, -3, -5), 1), line=13)),
     )
-    return scene, NativeRenderer().trace_pixel(scene, Settings(40, 30, max_depth=3), 21, 14)["rays"]
+    return scene, NativeRenderer().trace_pixel(scene, Settings(40, 30, max_depth=3), 21, 14).rays
 
 
 def test_a_tree_equals_itself(tree):
@@ -224,50 +224,51 @@ def test_a_tree_equals_itself(tree):
 
 def test_float_noise_is_no_difference(tree):
     other = copy.deepcopy(tree[1])
-    other[0]["hit"]["t"] *= 1 + 1e-7
-    other[0]["local"] = [channel + 1e-6 for channel in other[0]["local"]]
-    other[0]["radiance"] = [0, 0, 0]  # what a ray inherits does not count
+    other[0].hit.t *= 1 + 1e-7
+    other[0].local = [channel + 1e-6 for channel in other[0].local]
+    other[0].radiance = [0, 0, 0]  # what a ray inherits does not count
     assert first_unequal(pair_trees(tree[1], other)) is None
 
 
 @pytest.mark.parametrize(
     ("change", "what"),
     [
-        (lambda ray: ray.update(weight=0.5), "weight"),
-        (lambda ray: ray.update(direction=[0, 0, 1]), "direction"),
-        (lambda ray: ray.update(hit=None), "object hit"),
-        (lambda ray: ray["hit"].update(object=1), "object hit"),
-        (lambda ray: ray["hit"].update(t=ray["hit"]["t"] * 1.01), "t"),
-        (lambda ray: ray["hit"].update(t=math.nan), "t"),
-        (lambda ray: ray["hit"].update(entering=not ray["hit"]["entering"]), "entering"),
-        (lambda ray: ray["hit"].update(pigment=[0, 0, 0]), "pigment"),
-        (lambda ray: ray["hit"].update(total_reflection=True), "total reflection"),
-        (lambda ray: ray["hit"]["lights"][0].update(diffuse=[9, 9, 9]), "light 1, diffuse"),
-        (lambda ray: ray["hit"]["lights"].pop(), "light 2"),
-        (lambda ray: ray.update(local=[0, 0, 0]), "local colour"),
-        (lambda ray: ray.update(dropped={"reflected": "cutoff"}), "reflected ray dropped"),
+        (lambda ray: setattr(ray, "throughput", 0.5), "throughput"),
+        (lambda ray: setattr(ray, "direction", [0, 0, 1]), "direction"),
+        (lambda ray: setattr(ray, "hit", None), "object hit"),
+        (lambda ray: setattr(ray.hit, "object", 1), "object hit"),
+        (lambda ray: setattr(ray.hit, "t", ray.hit.t * 1.01), "t"),
+        (lambda ray: setattr(ray.hit, "t", math.nan), "t"),
+        (lambda ray: setattr(ray.hit, "entering", not ray.hit.entering), "entering"),
+        (lambda ray: setattr(ray.hit, "pigment", [0, 0, 0]), "pigment"),
+        (lambda ray: setattr(ray.hit, "total_reflection", True), "total reflection"),
+        (lambda ray: setattr(ray.hit.lights[0], "diffuse", [9, 9, 9]), "light 1, diffuse"),
+        (lambda ray: ray.hit.lights.pop(), "light 2"),
+        (lambda ray: setattr(ray, "local", [0, 0, 0]), "local colour"),
+        (lambda ray: setattr(ray, "dropped", {"reflected": "cutoff"}), "reflected ray dropped"),
     ],
 )
 def test_the_first_difference_is_found_and_named(tree, change, what):
     other = copy.deepcopy(tree[1])
-    change(other[0]["children"][1])  # the transmitted ray; the reflected one comes first
+    change(other[0].children[1])  # the transmitted ray; the reflected one comes first
     first = first_unequal(pair_trees(tree[1], other))
-    assert first.reference["kind"] == "transmitted"
+    assert first.reference.kind == "transmitted"
     assert first.unequal[0].what == what
 
 
 def test_which_of_several_blockers_is_no_difference(tree):
     one, other = copy.deepcopy(tree[1]), copy.deepcopy(tree[1])
     for rays, blocker in ((one, 0), (other, 1)):
-        rays[0]["hit"]["lights"][0] |= {"shadowed_by": blocker, "cosine": 0.5}
+        light = rays[0].hit.lights[0]
+        light.shadowed_by, light.cosine = blocker, 0.5
     assert first_unequal(pair_trees(one, other)) is None
-    other[0]["hit"]["lights"][0]["shadowed_by"] = None
+    other[0].hit.lights[0].shadowed_by = None
     assert first_unequal(pair_trees(one, other)).unequal[0].what == "light 1, shadowed by"
 
 
 def test_a_ray_that_only_one_traced(tree):
     other = copy.deepcopy(tree[1])
-    del other[0]["children"][0]
+    del other[0].children[0]
     pairs = pair_trees(tree[1], other)
     first = first_unequal(pairs)
     assert (first.test, first.unequal[0].what) == (None, "traced")
@@ -279,7 +280,7 @@ def test_a_ray_that_only_one_traced(tree):
 def test_listing(tree):
     scene, rays = tree
     lines = [line.text for line in list_rays(pair_trees(rays, rays), scene, ("n", "m"), None)]
-    assert lines[0].split()[:3] == ["ray", "weight", "hit"]
+    assert lines[0].split()[:3] == ["ray", "throughput", "hit"]
     assert "#0 sphere (12)" in lines[1]
     assert any("light 1 adds" in line for line in lines)
     assert any("light 2 behind" in line for line in lines)

@@ -113,9 +113,9 @@ def test_a_picture_is_known_by_how_it_begins(whitted, scene, draw, tmp_path):
 def test_the_reference_and_the_reading_are_chosen(whitted, scene, draw):
     picture = draw("a.exr", pixel="center", max_depth=1)
     assert whitted("compare", scene, picture)[0] == 1
-    status, out, _ = whitted("compare", scene, picture, "--reference", "native-depth-1", "--pixel", "center")
+    status, out, _ = whitted("compare", scene, picture, "--reference", "native:max_depth=1", "--pixel", "center")
     assert status == 0
-    assert out.startswith("reference: native-depth-1, which is trusted\n")
+    assert out.startswith("reference: native:max_depth=1, which is trusted\n")
 
 
 def test_the_size_may_be_given_and_must_be_the_pictures(whitted, scene, draw):
@@ -125,15 +125,17 @@ def test_the_size_may_be_given_and_must_be_the_pictures(whitted, scene, draw):
 
 
 def test_what_can_be_told_of_a_picture(whitted, scene, draw):
-    """No classes, for a picture has no rays; but the reference's own rays, with the options in force."""
+    """No classes, for a picture has no rays; but how to see those that lead to it, and why it differs, at the end."""
     picture = draw("a.exr", pixel="center")
     status, out, _ = whitted("compare", scene, picture, "--specular", "blinn", "--json", "a.json")
     assert status == 1
     assert "off by less than a pixel" in out
-    assert "An image has no rays: only of two methods is told why pixels disagree." in out
+    assert out.splitlines()[-1].startswith(
+        "Rays through the centres of the pixels instead of their top left corners: with"
+    )
     words = advice(out)
     assert words[:2] == ["pixel", scene]
-    assert words[-4:] == ["--specular", "blinn", "--method", "native"]
+    assert words[-4:] == ["--specular", "blinn", "--picture", picture]
     found = json.loads(Path("a.json").read_text())
     status, out, _ = whitted(*words)
     assert status == 0
@@ -213,12 +215,12 @@ def test_a_scene_and_a_picture_refuse_what_is_for_two_methods(whitted, scene, dr
 @pytest.mark.parametrize(
     ("method", "options"),
     [
-        ("native-depth-1", []),
-        ("native-depth-1", ["--pixel", "center"]),
-        ("native-depth-1", ["--specular", "blinn", "--samples", "4"]),
-        ("native-depth-1", ["--ior", "ratio", "--background=-1,0.1,1e-3"]),
-        ("native-depth-1", ["--cutoff", "0.05"]),
-        ("native-cutoff-64", ["--max-depth", "5"]),
+        ("native:max_depth=1", []),
+        ("native:max_depth=1", ["--pixel", "center"]),
+        ("native:max_depth=1", ["--specular", "blinn", "--samples", "4"]),
+        ("native:max_depth=1", ["--ior", "ratio", "--background=-1,0.1,1e-3"]),
+        ("native:max_depth=1", ["--cutoff", "0.05"]),
+        ("native:cutoff=1/64", ["--max-depth", "5"]),
     ],
 )
 def test_following_the_advice_shows_the_difference(whitted, scene, method, options):
@@ -236,7 +238,7 @@ def test_following_the_advice_shows_the_difference(whitted, scene, method, optio
 
 def test_no_advice_where_a_method_tells_no_rays(whitted, scene, monkeypatch):
     monkeypatch.delattr(NativeRenderer, "trace_pixel")
-    status, out, _ = whitted("compare", scene, *SIZE, "--method", "native-depth-1", "--explain", "0")
+    status, out, _ = whitted("compare", scene, *SIZE, "--method", "native:max_depth=1", "--explain", "0")
     assert status == 1
     assert "whitted pixel" not in out
 

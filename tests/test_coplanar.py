@@ -5,9 +5,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from converter.analysis.coplanar import with_planes_shared
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
-from converter.scene.coplanar import with_planes_shared
 from converter.scene.model import Object, Polyhedron
 from converter.studies.families import FAMILIES
 from converter.studies.families.scenes import BLACK, GLOW, camera, scene, sphere

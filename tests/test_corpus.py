@@ -23,6 +23,7 @@ from finite import assert_finite
 
 from converter.commands import main, raytrace
 from converter.commands.inspection import inspect_scene
+from converter.errors import ExportError
 from converter.images.texture import TextureError
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
@@ -31,8 +32,8 @@ from converter.scene.errors import SceneError
 from converter.scene.model import Sphere
 from converter.scene.parser import MOST_PROBLEMS, load_scene, parse_scene
 from converter.scene.settings import Settings
-from converter.to_mitsuba.export import ExportError, export_scene
-from converter.to_mitsuba.polyhedra import PolyhedronError
+from converter.to_mitsuba.export import export_scene
+from converter.to_mitsuba.meshes import PolyhedronError
 from converter.to_povray.export import export_povray
 
 CORPUS = Path(__file__).parent / "corpus"
@@ -338,7 +339,7 @@ import resource, sys
 from pathlib import Path
 import numpy, OpenImageIO
 from converter.renderers.native import NativeRenderer
-from converter.scene.cutoff import cutoff_bound
+from converter.analysis.cutoff import cutoff_bound
 from converter.scene.errors import SceneError
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings

@@ -10,9 +10,9 @@ from hypothesis import given
 from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 
+from converter.analysis import cutoff as cutoff_module
+from converter.analysis.cutoff import CutoffBound, cutoff_bound
 from converter.renderers.native import NativeRenderer
-from converter.scene import cutoff as cutoff_module
-from converter.scene.cutoff import CutoffBound, cutoff_bound
 from converter.scene.model import Camera, Checker, Finish, Light, Object, Polyhedron, Scene, Solid, Sphere, Texmap
 from converter.scene.needs import scene_needs
 from converter.scene.parser import load_scene

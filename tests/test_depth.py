@@ -8,7 +8,7 @@ from math import comb
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from variant import VARIANT
 
@@ -75,6 +75,7 @@ def rays_of_one_finish(kr: float, kt: float, cutoff: float, depth: int) -> int:
     return 1 + sum(comb(n, i) for n, i, weight in weights if weight > 0 and weight >= cutoff)
 
 
+@settings(deadline=None)
 @given(st.floats(0, 1), st.floats(0, 1), cutoffs)
 def test_a_pixel_has_fewer_rays_than_the_bound(kr, kt, cutoff):
     limit = depth_limit([passing(kr, kt)], Settings(cutoff=cutoff))
@@ -104,6 +105,7 @@ def test_the_bound_acts_as_soon_as_there_are_too_many_rays(kr, kt):
     assert depth_limit([passing(kr, kt)], Settings(cutoff=many)).rule == "rays"
 
 
+@settings(deadline=None)
 @given(st.lists(finishes, min_size=1, max_size=4), cutoffs, st.integers(0, 2**32))
 def test_trees_at_random_are_within_the_limit(many, cutoff, seed):
     """Rays meet finishes at random, and of two that follow the lighter one is followed first."""
@@ -221,7 +223,7 @@ def test_pixels_that_depth_left_incomplete_are_counted_once(mi, depth, samples):
     settings = small(width=40, height=30, max_depth=depth, samples=samples)
     counts = [drawn(renderer, MIXED, settings)[1] for renderer in RENDERERS]
     trees = [
-        NativeRenderer().trace_pixel(MIXED, settings, x, y)["rays"]
+        NativeRenderer().trace_pixel(MIXED, settings, x, y).rays
         for x in range(0, settings.width)
         for y in range(0, settings.height)
     ]
@@ -230,7 +232,7 @@ def test_pixels_that_depth_left_incomplete_are_counted_once(mi, depth, samples):
 
 
 def is_too_deep(ray) -> bool:
-    return "depth" in ray["dropped"].values() or any(map(is_too_deep, ray["children"]))
+    return "depth" in ray.dropped.values() or any(map(is_too_deep, ray.children))
 
 
 @RENDERER
@@ -284,5 +286,5 @@ def test_a_limit_that_no_option_helps_is_told(told):
 
 
 def test_a_method_with_a_depth_of_its_own_is_told(told):
-    found = told(panes(9, passing(0.1, 0.9)), "render", "--method", "native-depth-2")
-    assert "beyond 2 bounces: more is not what native-depth-2 follows" in found
+    found = told(panes(9, passing(0.1, 0.9)), "render", "--method", "native:max_depth=2")
+    assert "beyond 2 bounces: more is not what native:max_depth=2 follows" in found

@@ -3,7 +3,7 @@
 from dataclasses import replace
 from pathlib import Path
 
-from converter.scene.enclosure import enclosure_notices
+from converter.analysis.enclosure import enclosure_notices
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
 from converter.studies.families.scenes import GLASS, MATTE, WHITE, camera, light, scene, sphere

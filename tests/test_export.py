@@ -9,12 +9,13 @@ import pytest
 from variant import VARIANT
 
 import mitsuba_plugins
+from converter.errors import ExportError
 from converter.images.texture import read_texture
 from converter.images.write import write_image
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.scene.model import Texmap
 from converter.scene.settings import Settings
-from converter.to_mitsuba.export import ExportError, export_scene
+from converter.to_mitsuba.export import export_scene
 
 
 @pytest.fixture
@@ -129,7 +130,7 @@ def test_a_full_disk_leaves_the_earlier_export(small_scene, textured, tmp_path, 
     def full(*_):
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr("converter.to_mitsuba.polyhedra.write_ply", full)
+    monkeypatch.setattr("converter.to_mitsuba.meshes.write_ply", full)
     for target in (folder, tmp_path / "new"):
         with pytest.raises(OSError, match="No space"):
             export_scene(small_scene, Settings(), target)

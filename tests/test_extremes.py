@@ -56,21 +56,21 @@ def test_a_far_ball_has_a_back(renderer):
 
 
 def test_rays_go_straight_through_the_middle_of_a_far_glass_ball(double):
-    (primary,) = double.trace_pixel(far_ball(GLASS), SETTINGS, 1, 1)["rays"]
-    (within,) = primary["children"]
-    (behind,) = within["children"]
-    assert [ray["direction"] for ray in (primary, within, behind)] == [(0.0, 0.0, -1.0)] * 3
-    assert [ray["hit"]["normal"] for ray in (primary, within)] == [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0)]
-    assert [ray["hit"]["entering"] for ray in (primary, within)] == [True, False]
+    (primary,) = double.trace_pixel(far_ball(GLASS), SETTINGS, 1, 1).rays
+    (within,) = primary.children
+    (behind,) = within.children
+    assert [ray.direction for ray in (primary, within, behind)] == [(0.0, 0.0, -1.0)] * 3
+    assert [ray.hit.normal for ray in (primary, within)] == [(0.0, 0.0, 1.0), (0.0, 0.0, -1.0)]
+    assert [ray.hit.entering for ray in (primary, within)] == [True, False]
 
 
 def test_the_inside_of_a_far_ball_faces_the_eye(double):
     at = (0.0, 0.0, FAR)
     view = Camera(at, MIDDLE, (0.0, 1.0, 0.0), 40.0)
     made = scene(view, [(sphere(at, 1.0), WHITE, GLOSSY)], [light((0.0, 0.0, 2 * FAR))])
-    (ray,) = double.trace_pixel(made, SETTINGS, 1, 1)["rays"]
-    assert ray["hit"]["normal"] == (0.0, 0.0, -1.0)
-    assert not ray["hit"]["entering"]
+    (ray,) = double.trace_pixel(made, SETTINGS, 1, 1).rays
+    assert ray.hit.normal == (0.0, 0.0, -1.0)
+    assert not ray.hit.entering
 
 
 def test_a_ball_in_a_mirror_that_is_far_away(renderer):
@@ -98,16 +98,16 @@ def test_no_refraction_is_without_direction(double, ior):
     for y in (0.0, 0.5):
         view = camera((0.0, y, 5.0), (0.0, y, 0.0))
         made = scene(view, [(sphere(MIDDLE, 1.0), WHITE, replace(GLASS, ior=ior))])
-        (ray,) = double.trace_pixel(made, SETTINGS, 1, 1)["rays"]
-        (within,) = ray["children"]
-        assert within["hit"]["total_reflection"]
-        while ray["children"]:
-            (ray,) = ray["children"]
-            assert math.hypot(*ray["direction"]) == pytest.approx(1)
+        (ray,) = double.trace_pixel(made, SETTINGS, 1, 1).rays
+        (within,) = ray.children
+        assert within.hit.total_reflection
+        while ray.children:
+            (ray,) = ray.children
+            assert math.hypot(*ray.direction) == pytest.approx(1)
 
 
 def test_a_view_across_all_numbers(double):
     ends = (1.7e308, 1.7e308, 1.7e308), (-1.7e308, -1.7e308, -1.7e308)
     made = scene(camera(*ends), [(sphere(MIDDLE, 1.0), WHITE, GLOSSY)])
-    (ray,) = double.trace_pixel(made, SETTINGS, 1, 1)["rays"]
-    assert ray["direction"] == pytest.approx([-1 / math.sqrt(3)] * 3)
+    (ray,) = double.trace_pixel(made, SETTINGS, 1, 1).rays
+    assert ray.direction == pytest.approx([-1 / math.sqrt(3)] * 3)

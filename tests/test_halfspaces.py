@@ -17,6 +17,7 @@ from hypothesis import strategies as st
 
 from converter.scene.geometry import check_geometry, scene_facts
 from converter.scene.model import Object, Plane, Polyhedron, Sphere
+from converter.shapes.kind import Facts
 from native_tracer import _core
 from native_tracer.halfspaces import polyhedron_faces, polyhedron_facts
 
@@ -219,7 +220,7 @@ def test_check_geometry(small_scene):
     ball = Object(0, 0, Sphere((0.0, 0.0, 0.0), 1.0))
     scene = replace(small_scene, objects=(nothing, ball, plate, rod), file=Path("a.in"))
     facts = scene_facts(scene)
-    assert facts[1] is None
+    assert facts[1] == Facts((-1.0, -1.0, -1.0), (1.0, 1.0, 1.0), (0.0, 0.0, 0.0))
     empty, no_face = check_geometry(scene, facts)
     assert str(empty).startswith("a.in:12:1: object 0 is nothing: its planes 0 (1 0 0 1) and 1 (-1 0 0 0) exclude")
     assert (no_face.line, "touch, and leave neither a volume nor a face" in no_face.message) == (15, True)

@@ -100,7 +100,7 @@ def test_single_precision_draws_nearly_the_same(mi, small_scene, options, share)
 
 
 def test_spheres_as_meshes_keep_their_tolerance():
-    from converter.to_mitsuba.surfaces import unit_ball
+    from converter.to_mitsuba.meshing import unit_ball
 
     for tolerance in (0.1, 0.01, 0.001):
         ball = unit_ball(tolerance)

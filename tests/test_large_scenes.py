@@ -13,6 +13,7 @@ import pytest
 from converter.scene.geometry import scene_facts
 from converter.scene.model import Polyhedron, Sphere
 from converter.scene.parser import load_scene, parse_scene
+from converter.shapes.table import shape_kind
 
 ROOT = Path(__file__).resolve().parent.parent
 LARGE = ROOT / "scenes" / "large.py"
@@ -55,9 +56,11 @@ def test_balls_of_a_sphereflake_touch(large: ModuleType) -> None:
 @pytest.mark.parametrize("count", [1, 10, 200])
 def test_gallery(large: ModuleType, count: int) -> None:
     scene = parse_scene(str(large.gallery(count)))
-    bodies = [fact for fact in scene_facts(scene)[1:] if fact is not None]
+    bodies = scene_facts(scene)[1:]
     assert len(bodies) == len(scene.objects) - 1 == count
-    assert all(body.solid and body.bounded and not body.redundant for body in bodies)
+    assert all(body.bounded and not body.plate for body in bodies)
+    counts = [shape_kind(o.shape).count(o.shape) for o in scene.objects[1:]]
+    assert all(len(body.planes) == count for body, count in zip(bodies, counts, strict=True) if body.planes)
     assert all(body.low[1] < 0 < body.high[1] for body in bodies), "each stands on the floor, a little sunk into it"
     if count == 200:
         assert {o.finish for o in scene.objects} == set(range(len(scene.finishes)))

@@ -1,6 +1,7 @@
 """The table of methods, and what is told of them."""
 
 import json
+import re
 
 import pytest
 
@@ -16,7 +17,7 @@ def test_names_are_easy_to_type():
     for name, method in METHODS.items():
         assert name == method.name
         assert name == name.lower()
-        assert not set(name) - set("abcdefghijklmnopqrstuvwxyz0123456789.-")
+        assert not set(name) - set("abcdefghijklmnopqrstuvwxyz0123456789.-:=_/")
         assert name.startswith(method.family)
         assert len(f"  {'':22}{method.use}") <= 120
 
@@ -35,14 +36,14 @@ def test_no_two_methods_are_the_same_but_the_default_cutoff():
         m.name for m in METHODS.values() if made.count((m.family, tuple(m.options.items()), m.settings(GIVEN))) > 1
     ] == [
         "native",
-        "native-cutoff-512",
+        "native:cutoff=1/512",
     ]
 
 
 def test_settings():
-    assert METHODS["native-depth-7"].settings(GIVEN) == Settings(40, 30, samples=4, max_depth=7)
-    assert METHODS["native-cutoff-0"].settings(GIVEN).cutoff == 0
-    assert METHODS["mitsuba-1-thread"].settings(GIVEN).threads == 1
+    assert find_method("native:max_depth=7").settings(GIVEN) == Settings(40, 30, samples=4, max_depth=7)
+    assert METHODS["native:cutoff=0"].settings(GIVEN).cutoff == 0
+    assert METHODS["mitsuba:threads=1"].settings(GIVEN).threads == 1
 
 
 def test_the_variant_is_mitsubas_and_not_where_the_method_has_its_own():
@@ -54,6 +55,7 @@ def test_the_variant_is_mitsubas_and_not_where_the_method_has_its_own():
 
 def test_an_unknown_name():
     assert find_method("native") is METHODS["native"]
+    assert find_method("native:max_depth=4") is METHODS["native:max_depth=4"]
     with pytest.raises(ValueError, match=r"^there is no method 'mitsuba-mash' \(did you mean 'mitsuba-mesh'\?\)$"):
         find_method("mitsuba-mash")
 
@@ -119,3 +121,29 @@ def test_whitted_methods_as_json(capsys):
         "settings": {},
         "missing": METHODS["native"].missing(),
     }
+
+
+def test_a_method_with_other_settings():
+    method = find_method("mitsuba-bvh:max_depth=7:cutoff=1/64:threads=2")
+    assert method is find_method("mitsuba-bvh:max_depth=7:cutoff=1/64:threads=2")
+    assert method.settings(GIVEN) == Settings(40, 30, samples=4, max_depth=7, cutoff=1 / 64, threads=2)
+    assert (method.family, method.options) == ("mitsuba", {"intersections": "bvh"})
+    assert not method.usual
+
+
+@pytest.mark.parametrize(
+    ("name", "told"),
+    [
+        ("native:depth=1", "native has no setting 'depth': expected max_depth, cutoff, threads"),
+        ("native:", "native has no setting '': expected max_depth, cutoff, threads"),
+        ("native:max_depth", "max_depth must be a whole number from 0 to 1000, found ''"),
+        ("native:max_depth=-1", "max_depth must be a whole number from 0 to 1000, found '-1'"),
+        ("native:threads=0", "threads must be a whole number from 1 to 1024, found '0'"),
+        ("native:cutoff=1/0", "cutoff must be a number or a fraction from 0 on, found '1/0'"),
+        ("native:cutoff=nan", "cutoff must be a number or a fraction from 0 on, found 'nan'"),
+        ("nativ:cutoff=0", "there is no method 'nativ' (did you mean 'native'?)"),
+    ],
+)
+def test_settings_that_there_are_not(name, told):
+    with pytest.raises(ValueError, match=f"^{re.escape(told)}$"):
+        find_method(name)

@@ -75,11 +75,11 @@ def test_glass_is_read_by_the_setting():
     glass = Finish(ka=0, kd=0, ks=0, alpha=1, kr=0, kt=1, ior=1.5)
     scene = scene_of(Solid((1, 1, 1)), glass)
     auto, index, ratio = (
-        NativeRenderer().trace_pixel(scene, Settings(width=3, height=3, ior=ior), 0, 0)["rays"][0]["children"][0]
+        NativeRenderer().trace_pixel(scene, Settings(width=3, height=3, ior=ior), 0, 0).rays[0].children[0]
         for ior in ("auto", "index", "ratio")
     )
-    assert auto["direction"] == index["direction"] != ratio["direction"]
-    assert auto["direction"][1] < ratio["direction"][1]
+    assert auto.direction == index.direction != ratio.direction
+    assert auto.direction[1] < ratio.direction[1]
 
 
 def test_only_textures_in_use_are_read(monkeypatch):
@@ -108,8 +108,8 @@ def test_plane_numbers_are_the_scenes():
     # The first plane cuts nothing and is left out; the ray's hit is on the second.
     shape = Polyhedron(((0, 1, 0, -9), (0, 1, 0, 0), (0, -1, 0, -1)))
     tree = NativeRenderer().trace_pixel(scene_of(Solid((1, 1, 1)), shape=shape), ONE_PIXEL, 0, 0)
-    assert tree["rays"][0]["hit"]["plane"] == 1
-    assert tree["color"] == (0.25, 0.25, 0.25)
+    assert tree.rays[0].hit.plane == 1
+    assert tree.color == (0.25, 0.25, 0.25)
 
 
 def test_a_stopped_rendering_is_handed_over():

@@ -1,7 +1,7 @@
 """What a scene needs, what is told of it, and which `ior` is which."""
 
 import gc
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
 
@@ -11,16 +11,17 @@ from hypothesis import settings as hypothesis_settings
 from hypothesis import strategies as st
 from strategies import scenes
 
+from converter.analysis.notices import ior_notices, scene_notices
 from converter.scene import geometry
 from converter.scene.depth import MAX_DEPTH
 from converter.scene.model import Camera, Finish, Light, Object, Polyhedron, Scene, Solid, Sphere
 from converter.scene.needs import eta, is_index, scene_needs
-from converter.scene.notices import ior_notices, scene_notices
 from converter.scene.parser import load_scene, parse_scene
 from converter.scene.settings import IorReading, Settings
 from converter.scene.writer import write_scene
+from converter.shapes import polyhedron
+from converter.shapes.kind import Facts
 from converter.to_mitsuba.bounds import scene_bounds
-from native_tracer.halfspaces import PolyhedronFacts, polyhedron_facts
 
 MATTE = Finish(0.2, 0.8, 0, 1, 0, 0, 0)
 SHINY = Finish(0.2, 0.5, 0.5, 50, 0, 0, 0)
@@ -208,12 +209,13 @@ def test_nothing_to_tell(scene: Scene, settings: Settings) -> None:
 
 def test_facts_of_polyhedra_are_worked_out_once(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     calls = []
+    facts = polyhedron.facts
 
-    def counted(polyhedra: Iterable[Sequence[Sequence[float]]]) -> list[PolyhedronFacts]:
+    def counted(shapes: Sequence[Polyhedron]) -> list[Facts]:
         calls.append(1)
-        return polyhedron_facts(polyhedra)
+        return facts(shapes)
 
-    monkeypatch.setattr(geometry, "polyhedron_facts", counted)
+    monkeypatch.setattr(polyhedron, "facts", counted)
     cube = Polyhedron(((1, 0, 0, -1), (-1, 0, 0, -1), (0, 1, 0, -1), (0, -1, 0, -1), (0, 0, 1, -1), (0, 0, -1, -1)))
     wedge = Polyhedron(((0, 1, 0, -1), (1, 0, 0, -2)))
     file = tmp_path / "a.in"

@@ -6,10 +6,10 @@ from pathlib import Path
 import pytest
 from test_halfspaces import CUBE, OCTAHEDRON, PLATE, moved, prism
 
+from converter.analysis.notices import ior_notices, scene_notices
+from converter.analysis.oddities import oddity_notices
 from converter.commands.readings import ior_notices_that_show
 from converter.scene.model import Checker, Finish, Polyhedron, Solid
-from converter.scene.notices import ior_notices, scene_notices
-from converter.scene.oddities import oddity_notices
 from converter.scene.parser import load_scene, parse_scene
 from converter.scene.settings import Settings
 from converter.scene.writer import write_scene

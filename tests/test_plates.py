@@ -11,12 +11,12 @@ import numpy as np
 import pytest
 from test_halfspaces import PLATE, moved
 
-from converter.compare.margins import crossings, edge_margin, silhouette_margin, surface_margin
-from converter.regions.warnings import region_warnings
+from converter.analysis.coplanar import with_planes_shared
+from converter.analysis.cutoff import cutoff_bound
+from converter.analysis.regions.warnings import region_warnings
+from converter.compare.margins import edge_margin, intersections, silhouette_margin, surface_margin
 from converter.renderers.methods import METHODS
 from converter.renderers.native import NativeRenderer
-from converter.scene.coplanar import with_planes_shared
-from converter.scene.cutoff import cutoff_bound
 from converter.scene.model import Finish, Polyhedron, Scene, Solid
 from converter.scene.needs import scene_needs
 from converter.scene.parser import load_scene, parse_scene
@@ -24,7 +24,7 @@ from converter.scene.settings import Settings
 from converter.scene.writer import write_scene
 from converter.studies.families.scenes import GLASS, MATTE, MIRROR, WHITE, camera, light, scene, sphere
 from converter.to_mitsuba.bounds import Box
-from converter.to_mitsuba.polyhedra import polyhedron_mesh
+from converter.to_mitsuba.meshes import polyhedron_mesh
 from converter.to_povray.scene import povray_scene
 
 CASE = Path(__file__).parent / "corpus" / "drawn" / "plate.in"
@@ -146,7 +146,7 @@ def test_what_differs_on_a_plate_is_not_explained_by_its_other_side(direction):
     assert silhouette_margin(shape, -5 * d, d) > 0.4
     assert edge_margin(shape, -5 * d, d) > 0.4
     assert surface_margin(shape, np.zeros(3), on_it=True) == 1
-    assert tuple(crossings(shape, -5 * d, d)[0]) == pytest.approx((5, d[1] if d[1] < 0 else 1))
+    assert tuple(intersections(shape, -5 * d, d)[0]) == pytest.approx((5, d[1] if d[1] < 0 else 1))
 
 
 def test_a_plate_for_povray():
@@ -164,4 +164,4 @@ def test_a_plate_is_written_and_read_again():
     assert parse_scene(write_scene(made)) == made
     assert scene_needs(made, SETTINGS).bounded == (True, True, True)
     assert cutoff_bound(made, Settings()).bound < 1
-    assert NativeRenderer().trace_pixel(made, SETTINGS, 40, 30)["rays"][0]["hit"]["plane"] == 2
+    assert NativeRenderer().trace_pixel(made, SETTINGS, 40, 30).rays[0].hit.plane == 2

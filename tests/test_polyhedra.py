@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 
 from converter.scene.model import Camera, Finish, Light, Object, Polyhedron, Scene, Solid, Sphere
 from converter.scene.settings import Settings
-from converter.to_mitsuba.polyhedra import Box, PolyhedronError, polyhedron_mesh, scene_bounds, write_ply
+from converter.to_mitsuba.bounds import Box, scene_bounds
+from converter.to_mitsuba.meshes import PolyhedronError, polyhedron_mesh, write_ply
 from native_tracer.halfspaces import polyhedron_faces, polyhedron_facts
 
 BOX = Box((-100.0, -100.0, -100.0), (100.0, 100.0, 100.0))

@@ -8,18 +8,18 @@ import numpy as np
 import pytest
 
 from converter.commands import main
+from converter.errors import ExportError
 from converter.scene.model import Finish, Object, Polyhedron, Scene, Sphere, Texmap
 from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings
 from converter.scene.writer import write_scene
-from converter.to_mitsuba.export import ExportError
+from converter.shapes.table import shape_kind
 from converter.to_povray.export import export_povray
 from converter.to_povray.finishes import finish, transmission
 from converter.to_povray.interiors import Interior, Relation, interiors, relation
 from converter.to_povray.lights import fades
 from converter.to_povray.scale import scaled, suitable_scale
 from converter.to_povray.scene import povray_scene
-from converter.to_povray.surfaces import surface
 
 CUBE = ((1, 0, 0, -1), (-1, 0, 0, -1), (0, 1, 0, -1), (0, -1, 0, -1), (0, 0, 1, -1), (0, 0, -1, -1))
 
@@ -37,10 +37,11 @@ def textured(small_scene: Scene, tmp_path: Path) -> Scene:
 
 def test_numbers_keep_all_their_digits(small_scene: Scene) -> None:
     text = povray_scene(small_scene, Settings()).text
-    factor = suitable_scale(small_scene, scene_needs(small_scene, Settings()))
+    needs = scene_needs(small_scene, Settings())
+    factor = suitable_scale(small_scene, needs)
     assert f"sphere {{ <{-1.6 * factor!r}, {1.1 * factor!r}, {0.6 * factor!r}>, {1.1 * factor!r}" in text
     assert "ambient_light rgb <0.7, 0.8, 1>" in text and "background { rgb <0.7, 0.8, 1> }" in text
-    assert "max_trace_level 17\n  adc_bailout 0.001953125" in text
+    assert f"max_trace_level {needs.max_depth + 1}\n  adc_bailout 0.001953125" in text
 
 
 def test_only_what_is_seen(small_scene: Scene) -> None:
@@ -130,10 +131,15 @@ def test_transparent_finishes_lose_nothing(kr: float, kt: float) -> None:
     assert float(numbers["diffuse"]) * (1 - transmitted) == pytest.approx(0.4, rel=1e-10)
 
 
+def surface(scene: Scene, index: int) -> str:
+    shape = scene.objects[index].shape
+    return shape_kind(shape).povray(shape, scene_needs(scene, Settings()).facts[index])
+
+
 def test_redundant_planes_are_left_out_and_bounds_given(small_scene: Scene) -> None:
     slab = replace(small_scene, objects=(Object(0, 0, Polyhedron(((0, 2, 0, -1), (0, 1, 0, -9)))),))
-    assert surface(slab.objects[0].shape, scene_needs(slab, Settings()), 0) == "plane { <0, 1, 0>, 0.5 }"
-    block = surface(small_scene.objects[3].shape, scene_needs(small_scene, Settings()), 3)
+    assert surface(slab, 0) == "plane { <0, 1, 0>, 0.5 }"
+    block = surface(small_scene, 3)
     assert block.count("plane {") == 6 and block.count("bounded_by") == 1
 
 

@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 from variant import VARIANT
 
+from converter.analysis.regions.warnings import REGIONS, method_warnings, region_warnings
 from converter.commands.main import main
-from converter.regions.warnings import REGIONS, method_warnings, region_warnings
 from converter.renderers.methods import METHODS
 from converter.scene.model import Checker, Finish, Polyhedron, Texmap
 from converter.scene.parser import load_scene

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import pytest
 
+from converter.scene.entries import PIGMENT_NAMES, SHAPE_NAMES
 from converter.scene.errors import Problem, SceneError
 from converter.scene.parser import load_scene, parse_scene
 
@@ -162,10 +163,10 @@ CASES = [
     (7, "60.0", "\u0666\u0660", 7, 1, "a light's x must be a number, found '\u0666\u0660'"),
     (7, "60.0", "abc", 7, 1, "a light's x must be a number, found 'abc'"),
     # pigments
-    (10, "texmap", "texmpa", 10, 1, "expected solid, checker or texmap, found 'texmpa' (did you mean 'texmap'?)"),
-    (13, "checker", "Checker", 13, 1, "expected solid, checker or texmap, found 'Checker' (did you mean 'checker'?)"),
-    (14, "solid", "plastic", 14, 1, "expected solid, checker or texmap, found 'plastic'"),
-    (14, "solid ", "", 14, 1, "expected solid, checker or texmap, found '1'"),
+    (10, "texmap", "texmpa", 10, 1, f"expected {PIGMENT_NAMES}, found 'texmpa' (did you mean 'texmap'?)"),
+    (13, "checker", "Checker", 13, 1, f"expected {PIGMENT_NAMES}, found 'Checker' (did you mean 'checker'?)"),
+    (14, "solid", "plastic", 14, 1, f"expected {PIGMENT_NAMES}, found 'plastic'"),
+    (14, "solid ", "", 14, 1, f"expected {PIGMENT_NAMES}, found '1'"),
     (14, "1 1 1", "1 1", 14, 1, "solid needs 3 numbers for its colour, found 2 before the end of the line"),
     (14, "1 1 1", "1 1 1 1", 14, 13, "unexpected '1' after the last number of the pigment"),
     (13, " 40", "", 13, 1, "checker needs 7 numbers for two colours and a size, found 6 before 'solid'"),
@@ -188,16 +189,16 @@ CASES = [
     (17, "0.3 0 0", "0.3 .5 0", 17, 25, "a finish with kt above 0 needs an ior above 0, found '0'"),
     (17, "0.3 0 0", "0.3 .5 -1.5", 17, 25, "a finish with kt above 0 needs an ior above 0, found '-1.5'"),
     # objects
-    (22, "sphere", "Sphere", 22, 5, "expected sphere or polyhedron, found 'Sphere' (did you mean 'sphere'?)"),
+    (22, "sphere", "Sphere", 22, 5, f"expected {SHAPE_NAMES}, found 'Sphere' (did you mean 'sphere'?)"),
     (
         23,
         "polyhedron",
         "polihedron",
         23,
         5,
-        "expected sphere or polyhedron, found 'polihedron' (did you mean 'polyhedron'?)",
+        f"expected {SHAPE_NAMES}, found 'polihedron' (did you mean 'polyhedron'?)",
     ),
-    (22, "sphere", "cube", 22, 5, "expected sphere or polyhedron, found 'cube'"),
+    (22, "sphere", "cube", 22, 5, f"expected {SHAPE_NAMES}, found 'cube'"),
     (22, "sphere ", "", 22, 1, "unexpected '2' at the beginning of a line after the object"),
     (22, " 20", "", 22, 5, "sphere needs 4 numbers for its centre and radius, found 3 before the end of the line"),
     (29, " 20", "", 29, 5, "sphere needs 4 numbers for its centre and radius, found 3 before the end of the file"),
@@ -242,7 +243,7 @@ CASES = [
     (22, "20", "20 // ball", 22, 24, f"unexpected '//' after the last number of the object{COMMENT}"),
     (14, "1 1 1", "1,1,1", 14, 7, f"expected solid's red, found '1,1,1'{BLANKS}"),
     (14, "1 1 1", "1, 1, 1", 14, 7, f"expected solid's red, found '1,'{BLANKS}"),
-    (14, "solid", "solid,", 14, 1, f"expected solid, checker or texmap, found 'solid,'{BLANKS}"),
+    (14, "solid", "solid,", 14, 1, f"expected {PIGMENT_NAMES}, found 'solid,'{BLANKS}"),
 ]
 
 

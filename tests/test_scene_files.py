@@ -155,14 +155,14 @@ def test_a_fault_within_a_texture_is_told_with_the_scenes_line(
 
 
 def test_shapes_are_looked_at_once_the_rest_is_well(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    from converter.scene import geometry
+    from converter.scene import parser
 
     file = tmp_path / "a.in"
     text = TEXT.replace("texmap rainbow1.ppm\n0 0.001 0 .12\n0 0 0 0", "solid 1 0 0")
     file.write_text(text)
     complaint = "its half-spaces have no point in common"
     monkeypatch.setattr(
-        geometry, "check_geometry", lambda scene: [Problem(scene.file, scene.objects[2].line, 1, complaint)]
+        parser, "check_geometry", lambda scene: [Problem(scene.file, scene.objects[2].line, 1, complaint)]
     )
     with pytest.raises(SceneError) as caught:
         load_scene(file)

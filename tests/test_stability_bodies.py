@@ -17,7 +17,7 @@ from converter.studies.families import polyhedra, ray_trees, reflection, refract
 FAMILIES = {f.name: f for module in (polyhedra, reflection, refraction, ray_trees) for f in module.FAMILIES}
 
 HOLDS = {
-    "slivers": 1e-11,
+    "slivers": 1e-10,
     "horizon": 1e11,
     "empty": 1e-13,
     "mirror-corner": 1e10,

@@ -178,7 +178,7 @@ def test_benchmark():
     same = compared("native-brute", "3", "--size", "16", "12")
     assert same.returncode == 0, same.stderr
     assert "native against native-brute: 0 pixels disagree, in 0 scenes" in same.stdout
-    other = compared("native-depth-1", "12", "--size", "32", "24")
+    other = compared("native:max_depth=1", "12", "--size", "32", "24")
     assert other.returncode == 1, other.stderr
-    assert "native against native-depth-1: " in other.stdout
+    assert "native against native:max_depth=1: " in other.stdout
     assert "\n  0: " in other.stdout

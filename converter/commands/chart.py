@@ -42,7 +42,7 @@ def parser() -> Parser:
         "--methods",
         type=_methods,
         metavar="NAME,...|all",
-        help="the methods (all, but of the depths only 1, 2, 4, 8 and 16)",
+        help="the methods (all)",
     )
     group.add_argument("--vs", choices=("povray",), help="with POV-Ray as well, which has to be installed")
     group.add_argument(

@@ -28,6 +28,7 @@ from converter.commands.options import (
 )
 from converter.commands.results import Result, TextResult
 from converter.descriptors import STANDARD_OUTPUT
+from converter.renderers.base import tells_rays
 
 if TYPE_CHECKING:
     from converter.compare.classes import Explanation
@@ -35,6 +36,7 @@ if TYPE_CHECKING:
     from converter.compare.report import Pictures, Report
     from converter.renderers.methods import Method
     from converter.scene.model import Scene
+    from converter.scene.settings import Settings
 
 FOR_IMAGES = frozenset({"--limit", "--png", "--amplify", "--json", "--quiet"})
 """Options that mean something where nothing is drawn."""
@@ -157,6 +159,8 @@ def run(arguments: argparse.Namespace) -> int:
         _print(report)
         if report.difference.disagreeing and chosen:
             _print_what_to_do(arguments, compared, chosen, report)
+            if compared.candidate is not None:
+                _print_why(arguments, compared.candidate, chosen[0].settings)
     write_json(arguments.json, to_json(report))
     return OK if report.agrees else DISAGREE
 
@@ -368,18 +372,33 @@ def _print(report: "Report") -> None:
     print(f"\n{verdict(report)}")
 
 
+def _print_why(arguments: argparse.Namespace, candidate: Path, settings: "Settings") -> None:
+    """The mistakes that lead to a picture, in a sentence."""
+    from converter.commands.notes import load, say
+    from converter.why.judge import judge
+    from converter.why.picture import read_theirs
+    from converter.why.report import verdict
+    from converter.why.student import UnknownToStudent
+
+    try:
+        print(verdict(judge(load(arguments.scene), read_theirs(candidate), settings)))
+    except UnknownToStudent as error:
+        say(f"note: {error}", arguments.quiet)
+
+
 def _print_what_to_do(
     arguments: argparse.Namespace, compared: Compared, chosen: list[Chosen], report: "Report"
 ) -> None:
     """How to see the rays behind the largest difference, with the options in force."""
-    if compared.candidate is not None:
-        print("An image has no rays: only of two methods is told why pixels disagree.")
-    if not all(hasattr(method.renderer, "trace_pixel") for method in chosen):
+    if not all(tells_rays(method.renderer) for method in chosen):
         return
     found = report.difference
     place = map(str, (found.largest.x, found.largest.y, found.width, found.height))
     scene = f"./{compared.scene}" if str(compared.scene).startswith("-") else str(compared.scene)
     candidate = arguments.method if compared.candidate is None else arguments.reference
     words = ["whitted", "pixel", scene, *place, *reading_words(settings_from(arguments))]
-    words += method_words(arguments.reference, candidate, arguments.variant)
+    if compared.candidate is not None and arguments.reference.name == "native":
+        words += ["--picture", str(compared.candidate)]
+    else:
+        words += method_words(arguments.reference, candidate, arguments.variant)
     print(f"The rays behind the largest difference: {shlex.join(words)}")

@@ -8,8 +8,8 @@ from converter.commands.notes import depth_warning, load_with_notices, say
 from converter.commands.progress import ProgressBar
 from converter.files import check_apart
 from converter.images.write import check_writable, write_image
+from converter.pigments.table import pigment_kind
 from converter.renderers.base import Interrupted, Renderer, Rendering
-from converter.scene.model import Texmap
 from converter.scene.settings import Settings
 
 if TYPE_CHECKING:
@@ -43,7 +43,7 @@ def draw(
     check_writable(out, ending)
     started = time.perf_counter()
     scene = load_with_notices(scene_file, settings, quiet, method)
-    check_apart(out, (pigment.file for pigment in scene.pigments if isinstance(pigment, Texmap)))
+    check_apart(out, (file for pigment in scene.pigments for file in pigment_kind(pigment).files(pigment)))
     if not quiet:
         from converter.commands.readings import ior_notices_that_show
 
@@ -77,4 +77,4 @@ def _warn_of_nan(rendering: Rendering, out: Path, quiet: bool) -> None:
 
     if count := count_nan_pixels(rendering.pixels):
         share = f"{count} of {rendering.width * rendering.height} pixels"
-        say(f"warning: {out}: {share} are no numbers (NaN): the colours there exceed all numbers", quiet)
+        say(f"warning: {out}: {share} are NaN: the colours there exceed all numbers", quiet)

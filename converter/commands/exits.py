@@ -21,8 +21,9 @@ BROKEN_PIPE = 141
 _UNUSABLE = (
     ("converter.images.texture", "TextureError"),
     ("converter.compare.metrics", "SizeMismatch"),
-    ("converter.to_mitsuba.export", "ExportError"),
-    ("converter.to_mitsuba.polyhedra", "PolyhedronError"),
+    ("converter.why.student", "UnknownToStudent"),
+    ("converter.errors", "ExportError"),
+    ("converter.to_mitsuba.meshes", "PolyhedronError"),
     ("converter.renderers.povray", "PovrayError"),
 )
 _UNAVAILABLE = (("converter.renderers.base", "RendererUnavailable"), ("mitsuba_plugins.backend", "BackendError"))

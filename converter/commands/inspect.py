@@ -10,6 +10,8 @@ from converter.commands.options import Parser, add_reading_options, settings_fro
 from converter.commands.results import TextResult
 from converter.commands.tables import print_table
 from converter.descriptors import STANDARD_OUTPUT
+from converter.pigments.table import PIGMENT_WORDS
+from converter.shapes.table import SHAPE_KINDS
 
 MOST_ROWS = 20
 """Rows of a table; a scene may have thousands of polyhedra."""
@@ -77,7 +79,7 @@ def _print(found: dict[str, Any]) -> None:
         "pigments",
         ("", "kind", "", "objects"),
         "rllr",
-        [(str(p["pigment"]), p["kind"], _pigment(p), _uses(p)) for p in found["pigments"]],
+        [(str(p["pigment"]), p["kind"], PIGMENT_WORDS[p["kind"]].summary(p), _uses(p)) for p in found["pigments"]],
     )
     _print_rows(
         "finishes",
@@ -161,7 +163,7 @@ def _cutoff(found: dict[str, Any], needs: dict[str, Any]) -> str:
         within = "" if needs["max_depth_rule"] in ("none", "cutoff") else f" within {needs['max_depth']} bounces"
         return f"{share}: drops no ray{within}"
     if 255 * bound > MOST_LEVELS:
-        return f"{share}: the bound is loose here; whitted compare --reference native-cutoff-4096 measures"
+        return f"{share}: the bound is loose here; whitted compare --reference native:cutoff=1/4096 measures"
     return f"{share}: no channel is off by more than {_rounded_up(bound)} ({_rounded_up(255 * bound)} of 255 levels)"
 
 
@@ -180,22 +182,13 @@ def _print_rows(title: str, header: tuple[str, ...], align: str, rows: list[tupl
         print(f"... and {len(rows) - MOST_ROWS} more; --json lists them all")
 
 
-def _pigment(pigment: dict[str, Any]) -> str:
-    if pigment["kind"] == "solid":
-        return _numbers(pigment["color"])
-    if pigment["kind"] == "checker":
-        return f"{_numbers(pigment['first'])} and {_numbers(pigment['second'])}, size {pigment['size']:g}"
-    size = f"{pigment['width']} x {pigment['height']}" if pigment["width"] else "missing"
-    return f"{pigment['file']}, {size}, P0 {_numbers(pigment['p0'])}, P1 {_numbers(pigment['p1'])}"
-
-
 def _uses(entry: dict[str, Any]) -> str:
     return str(entry["objects"]) if entry["objects"] else "unused"
 
 
 def _counted(kind: str, count: int) -> str:
-    plurals = {"polyhedron": "polyhedra"}
-    return f"{count} {kind if count == 1 else plurals.get(kind, f'{kind}s')}"
+    plurals = {each.NAME: each.PLURAL for each in SHAPE_KINDS.values()}
+    return f"{count} {kind if count == 1 else plurals[kind]}"
 
 
 def _indices(indices: list[int]) -> str:

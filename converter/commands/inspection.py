@@ -4,11 +4,13 @@ from collections import Counter
 from dataclasses import asdict
 from typing import Any
 
-from converter.scene.cutoff import cutoff_bound
-from converter.scene.model import Checker, Finish, Pigment, Polyhedron, Scene, Solid
+from converter.analysis.cutoff import cutoff_bound
+from converter.analysis.notices import ior_notices, scene_notices
+from converter.pigments.table import pigment_kind
+from converter.scene.model import Finish, Pigment, Scene
 from converter.scene.needs import SceneNeeds, is_index, scene_needs
-from converter.scene.notices import ior_notices, scene_notices
 from converter.scene.settings import Settings
+from converter.shapes.table import shape_kind
 
 
 def inspect_scene(scene: Scene, settings: Settings) -> dict[str, Any]:
@@ -25,7 +27,7 @@ def inspect_scene(scene: Scene, settings: Settings) -> dict[str, Any]:
         "finishes": _finishes(scene, needs, settings),
         "objects": {
             "count": len(scene.objects),
-            "kinds": dict(Counter(type(o.shape).__name__.lower() for o in scene.objects)),
+            "kinds": dict(Counter(shape_kind(o.shape).NAME for o in scene.objects)),
             "planes": sum(len(p["planes"]) + len(p["redundant_planes"]) for p in polyhedra),
             "redundant_planes": sum(len(p["redundant_planes"]) for p in polyhedra),
             "unbounded": sum(not p["bounded"] for p in polyhedra),
@@ -54,7 +56,7 @@ def inspect_scene(scene: Scene, settings: Settings) -> dict[str, Any]:
 
 def _warnings(scene: Scene, settings: Settings) -> dict[str, tuple[str, ...]]:
     """Where methods are known to fail with the scene, by their names; a method for each arithmetic."""
-    from converter.regions.warnings import region_warnings
+    from converter.analysis.regions.warnings import region_warnings
     from converter.renderers.methods import METHODS, Method
 
     methods: dict[str | None, Method] = {}
@@ -70,14 +72,8 @@ def _pigments(scene: Scene) -> list[dict[str, Any]]:
 
 
 def _pigment(pigment: Pigment) -> dict[str, Any]:
-    kind = {"kind": type(pigment).__name__.lower()}
-    if isinstance(pigment, Solid | Checker):
-        return {**kind, **asdict(pigment)}
-    from converter.images.texture import probe_texture
-
-    # A scene may have one that is missing, if no object uses it.
-    width, height = probe_texture(pigment.file) if pigment.file.exists() else (None, None)
-    return {**kind, "file": str(pigment.file), "width": width, "height": height, "p0": pigment.p0, "p1": pigment.p1}
+    kind = pigment_kind(pigment)
+    return {"kind": kind.SPELLINGS[0], **kind.facts(pigment)}
 
 
 def _finishes(scene: Scene, needs: SceneNeeds, settings: Settings) -> list[dict[str, Any]]:
@@ -107,12 +103,12 @@ def _polyhedra(scene: Scene, needs: SceneNeeds) -> list[dict[str, Any]]:
             "object": i,
             "line": o.line,
             "planes": needs.planes[i],
-            "redundant_planes": sorted(set(range(len(o.shape.planes))).difference(needs.planes[i])),
+            "redundant_planes": sorted(set(range(len(planes))).difference(needs.planes[i])),
             "bounded": needs.bounded[i],
             "plate": needs.plates[i],
         }
         for i, o in enumerate(scene.objects)
-        if isinstance(o.shape, Polyhedron)
+        if (planes := shape_kind(o.shape).planes(o.shape))
     ]
 
 

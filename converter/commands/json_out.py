@@ -3,6 +3,7 @@
 import json
 import math
 from collections.abc import Iterable, Mapping, Sequence
+from dataclasses import fields, is_dataclass
 from pathlib import Path
 from typing import Any
 
@@ -24,7 +25,7 @@ def check_json(file: Path | None, sources: Iterable[Path] = ()) -> None:
 def write_json(file: Path | None, result: Any) -> None:
     """Write `result` to `file`, which appears whole or not at all; None is nowhere.
 
-    NaN and infinities, unknown to JSON, become null.
+    NaN and infinities, unknown to JSON, become null; data classes are objects of it.
     """
     if file is None:
         return
@@ -43,6 +44,8 @@ def write_text(file: Path, text: str) -> None:
 def _finite(value: Any) -> Any:
     if isinstance(value, float):
         return value if math.isfinite(value) else None
+    if is_dataclass(value):
+        return {each.name: _finite(getattr(value, each.name)) for each in fields(value)}
     if isinstance(value, Mapping):
         return {key: _finite(item) for key, item in value.items()}
     if isinstance(value, Sequence) and not isinstance(value, str):

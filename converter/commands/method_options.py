@@ -67,12 +67,12 @@ def native_instead(name: str, instead: str = "--method native") -> Iterator[None
 
     """
     from converter.renderers.base import RendererUnavailable
-    from converter.renderers.methods import METHODS
+    from converter.renderers.methods import METHODS, find_method
 
     try:
         yield
     except RendererUnavailable as error:
-        if METHODS[name].family != "mitsuba" or METHODS[REFERENCE].missing() is not None:
+        if find_method(name).family != "mitsuba" or METHODS[REFERENCE].missing() is not None:
             raise
         raise RendererUnavailable(f"{error}\n{instead} draws without Mitsuba") from error
 

@@ -46,14 +46,14 @@ def load_with_notices(
     """
     scene = load(path)
     if not quiet:
-        from converter.scene.notices import scene_notices
+        from converter.analysis.notices import scene_notices
 
         for warning in scene.warnings:
             say(f"warning: {warning}")
         for notice in scene_notices(scene, settings):
             say(f"note: {notice}")
         if method is not None:
-            from converter.regions.warnings import method_warnings
+            from converter.analysis.regions.warnings import method_warnings
 
             for warning in method_warnings(scene, settings, method):
                 say(f"warning: {warning}")

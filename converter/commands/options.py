@@ -10,11 +10,10 @@ from typing import NoReturn
 from converter.commands.exits import UsageError
 from converter.scene.depth import MAX_DEPTH
 from converter.scene.model import Color
-from converter.scene.settings import Settings
+from converter.scene.settings import MOST_THREADS, Settings
 
 MAX_SIZE = 65535
 MAX_SAMPLES = 65536
-MAX_THREADS = 1024
 DEFAULTS = Settings()
 
 
@@ -117,7 +116,7 @@ def _seed(text: str) -> int:
 
 
 def _threads(text: str) -> int:
-    return whole(text, 0, MAX_THREADS)
+    return whole(text, 0, MOST_THREADS)
 
 
 def size(text: str) -> tuple[int, int]:

@@ -3,17 +3,19 @@
 import argparse
 from array import array
 from pathlib import Path
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from converter.commands.exits import OK, UsageError
 from converter.commands.method_options import add_method_options, check_variant, choose, native_instead
 from converter.commands.options import Parser, add_reading_options, add_size, position, settings_from
 from converter.commands.results import TextResult
 from converter.descriptors import STANDARD_OUTPUT
+from converter.renderers.base import RayTeller, tells_rays
 
 if TYPE_CHECKING:
     from converter.compare.ray_listing import Line
     from converter.compare.rays import Pair
+    from converter.renderers.records import PixelRecord
     from converter.scene.model import Scene
 
 
@@ -21,16 +23,23 @@ def parser() -> Parser:
     """The command's arguments."""
     result = Parser(
         "whitted pixel",
-        "SCENE X Y [WIDTH HEIGHT] [options]",
+        "SCENE X Y [WIDTH HEIGHT] [options]\nSCENE X Y --picture PICTURE [options]",
         "Lists the rays behind a pixel by two methods: what each hits, which lights reach it, what follows it.\n"
         "Where they differ there is a line for each; > marks the first difference, told in full at the end.",
-        "whitted pixel figure1.in 400 300\n  whitted pixel figure1.in 400 300 --method native",
+        "whitted pixel figure1.in 400 300\n  whitted pixel figure1.in 400 300 --method native\n"
+        "  whitted pixel figure1.in 400 300 --picture mine.ppm",
     )
     result.add_argument("scene", type=Path, metavar="SCENE", help="the scene file")
     result.add_argument("x", type=position, metavar="X", help="the pixel's column, 0 is the leftmost")
     result.add_argument("y", type=position, metavar="Y", help="the pixel's row, 0 is the top one")
     add_size(result)
     group = result.add_argument_group("what is told")
+    group.add_argument(
+        "--picture",
+        type=Path,
+        metavar="FILE",
+        help="a picture of yours: beside the right rays those that lead to it, with the mistakes that `why` names",
+    )
     group.add_argument(
         "--json",
         action=TextResult,
@@ -45,6 +54,8 @@ def parser() -> Parser:
 
 def run(arguments: argparse.Namespace) -> int:
     """Trace the pixel, and tell."""
+    if arguments.picture is not None:
+        return _run_with_picture(arguments)
     settings = settings_from(arguments)
     x, y = arguments.x, arguments.y
     if x >= settings.width or y >= settings.height:
@@ -52,20 +63,21 @@ def run(arguments: argparse.Namespace) -> int:
     methods = list(dict.fromkeys((arguments.reference, arguments.method)))
     check_variant(arguments, methods)
     chosen = [choose(method, arguments) for method in methods]
-    tracers: dict[str, Any] = {c.name: getattr(c.renderer, "trace_pixel", None) for c in chosen}
-    for name, tracer in tracers.items():
-        if tracer is None:
+    tellers: dict[str, RayTeller] = {}
+    for name, renderer, _ in chosen:
+        if not tells_rays(renderer):
             raise UsageError(f"{name} does not tell its rays")
+        tellers[name] = renderer
 
     from converter.commands.json_out import check_json, write_json
     from converter.commands.notes import load_with_notices
 
     check_json(arguments.json, [arguments.scene])
     scene = load_with_notices(arguments.scene, settings, arguments.quiet)
-    traced: dict[str, dict[str, Any]] = {}
+    traced: dict[str, PixelRecord] = {}
     for name, _, changed in chosen:
         with native_instead(name):
-            traced[name] = tracers[name](scene, changed, x, y)
+            traced[name] = tellers[name].trace_pixel(scene, changed, x, y)
     if arguments.json != STANDARD_OUTPUT:
         print(f"{arguments.scene} at {settings.width} x {settings.height}, pixel ({x}, {y}): {' | '.join(traced)}\n")
         _list(scene, traced)
@@ -73,12 +85,56 @@ def run(arguments: argparse.Namespace) -> int:
     return OK
 
 
-def _list(scene: "Scene", traced: dict[str, dict[str, Any]]) -> None:
+def _run_with_picture(arguments: argparse.Namespace) -> int:
+    """The pixel in two readings: the right one, and the one that leads to a picture."""
+    import numpy as np
+
+    from converter.commands.json_out import check_json, write_json
+    from converter.commands.notes import load_with_notices
+    from converter.renderers.native import NativeRenderer
+    from converter.why.judge import judge
+    from converter.why.picture import read_theirs
+    from converter.why.report import verdict
+
+    for option in sorted(arguments.given & {"--method", "--reference", "--variant"}):
+        raise UsageError(f"{option} means nothing beside --picture, which is compared with the native tracer")
+    check_json(arguments.json, [arguments.scene, arguments.picture])
+    theirs = read_theirs(arguments.picture)
+    height, width, _ = theirs.levels.shape
+    if arguments.width is not None and (arguments.width, arguments.height) != (width, height):
+        given = f"{arguments.width} x {arguments.height}"
+        raise UsageError(f"{arguments.picture} has {width} x {height} pixels, not {given}")
+    x, y = arguments.x, arguments.y
+    if x >= width or y >= height:
+        raise UsageError(f"pixel ({x}, {y}) lies outside the picture of {width} x {height} pixels")
+    settings = settings_from(arguments)
+    scene = load_with_notices(arguments.scene, settings, arguments.quiet)
+    judged = judge(scene, theirs, settings)
+    causes = frozenset(judged.found.causes)
+    traced = {"native": NativeRenderer().trace_pixel(scene, judged.settings, x, y)}
+    if causes:
+        traced["theirs"] = judged.student.trace_pixel(x, y, causes)
+    if arguments.json != STANDARD_OUTPUT:
+        print(verdict(judged))
+        print(f"{arguments.scene} at {width} x {height}, pixel ({x}, {y}): {' | '.join(traced)}\n")
+        _list(scene, traced)
+        levels = {"the right picture": judged.reference[y, x], str(arguments.picture): theirs.levels[y, x]}
+        if causes:
+            levels["with the mistakes named"] = judged.student.drawn(np.array([[x, y]], np.int32), causes)[0]
+        print()
+        length = max(map(len, levels))
+        for name, row in levels.items():
+            print(f"of 255  {name:{length}}  {' '.join(f'{level:3}' for level in row)}")
+    write_json(arguments.json, {**traced, "picture": theirs.levels[y, x].tolist(), "causes": sorted(causes)})
+    return OK
+
+
+def _list(scene: "Scene", traced: dict[str, "PixelRecord"]) -> None:
     from converter.compare.ray_listing import list_rays
     from converter.compare.rays import first_unequal, pair_trees
     from native_tracer import quantize
 
-    names, trees = list(traced), [tree["rays"] for tree in traced.values()]
+    names, trees = list(traced), [tree.rays for tree in traced.values()]
     pairs = pair_trees(trees[0], trees[-1])
     first = first_unequal(pairs)
     letters = (names[0][0], names[-1][0])
@@ -87,7 +143,7 @@ def _list(scene: "Scene", traced: dict[str, dict[str, Any]]) -> None:
     print()
     width = max(map(len, names))
     for name, tree in traced.items():
-        color = tree["color"]
+        color = tree.color
         quantized = quantize(array("f", color))
         levels = " ".join(
             f"{b:3}" if channel == channel else "NaN" for b, channel in zip(quantized, color, strict=True)
@@ -112,7 +168,7 @@ def _print_difference(first: "Pair | None", scene: "Scene", names: list[str]) ->
             values = ["nothing" if value is None else object_name(scene, value) for value in values]
         rows.append((unequal.what, *map(shown, values)))
     ray = first.either
-    title = f"first difference: the {ray['kind']} ray at depth {ray['depth']} of weight {ray['weight']:.3g}"
+    title = f"first difference: the {ray.kind} ray at depth {ray.depth} of throughput {ray.throughput:.3g}"
     print_table(rows, ("", *names), title=title)
 
 

@@ -2,10 +2,10 @@
 
 from dataclasses import replace
 
+from converter.analysis.notices import ior_notices
 from converter.renderers.native import build_scene, native_module
 from converter.scene.model import Scene
 from converter.scene.needs import scene_needs
-from converter.scene.notices import ior_notices
 from converter.scene.settings import IorReading, Settings
 
 WIDTH, HEIGHT = 64, 48

@@ -17,27 +17,29 @@ import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any, Literal, NamedTuple, get_args
+from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
 
 import numpy as np
 
 from converter.compare.margins import (
-    crossings,
     edge_margin,
+    intersections,
     silhouette_margin,
     surface_margin,
     tie_margin,
-    tile_margin,
 )
 from converter.compare.metrics import LIMIT, Pixels, absolute_difference
-from converter.compare.rays import Pair, Ray, pair_trees
-from converter.scene.model import Polyhedron, Scene, Shape, Sphere
+from converter.compare.rays import Pair, pair_trees
+from converter.pigments.table import pigment_kind
+from converter.renderers.records import HitRecord, LightRecord, PixelRecord, RayRecord, Triple
+from converter.scene.model import Scene, Shape
 from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings
+from converter.shapes.table import shape_kind
 
 if TYPE_CHECKING:
     from converter.renderers.methods import Method
-    from converter.to_mitsuba.polyhedra import PolyhedronMesh
+    from converter.to_mitsuba.meshes import PolyhedronMesh
 
 Class = Literal[
     "silhouette",
@@ -52,7 +54,6 @@ CLASSES: tuple[Class, ...] = get_args(Class)
 """What a boundary is of. A silhouette is any place where a ray comes to meet another object or another face; a ray is
 not followed by a method that has another cut-off or depth, or where its weight is the cut-off itself."""
 
-TERMS = ("diffuse", "specular")
 MOST_TRACED = 256
 """Pixels that are traced at most; of more, as many evenly among them."""
 BATCH = 32
@@ -86,8 +87,8 @@ ARITHMETICS = {
 """By the names that `Method.arithmetic` gives them."""
 
 
-Trace = Callable[[Sequence[tuple[int, int]]], list[dict[str, Any]]]
-"""Traces pixels, as `NativeRenderer.trace_pixels` documents it."""
+Trace = Callable[[Sequence[tuple[int, int]]], list[PixelRecord]]
+"""Traces pixels, as `RayTeller` has it."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -167,7 +168,7 @@ def explain(
         except ValueError:  # more rays than a listing can hold
             continue
         found += (
-            explainer.pixel(x, y, pair_trees(one["rays"], other["rays"]))
+            explainer.pixel(x, y, pair_trees(one.rays, other.rays))
             for (x, y), one, other in zip(batch, *trees, strict=True)
         )
     return Explanation(len(rows), tuple(found))
@@ -197,7 +198,7 @@ class _Cause(NamedTuple):
 
     kind: Class
     what: str
-    ray: Ray
+    ray: RayRecord
     amount: float
     near: _Margin
 
@@ -219,9 +220,9 @@ class _Explainer:
         self._same_limits = len({(n.max_depth, each.cutoff) for n, each in zip(needs, settings, strict=True)}) == 1
         self._unit, self._hidden, self._moved, facets = ARITHMETICS[arithmetic]
         self._rounding = ROUNDINGS * self._unit
-        self._extents = [_extent(o.shape) for o in scene.objects]
+        self._extents = [shape_kind(o.shape).extent(o.shape) for o in scene.objects]
         self._deviations: list[float] = [0.0] * len(scene.objects)
-        self._tilts: dict[tuple[int, int], float] = {}
+        self._tilts: dict[tuple[int, int | None], float] = {}
         if self._moved:
             from converter.to_mitsuba.surfaces import shapes
 
@@ -241,102 +242,107 @@ class _Explainer:
             return Explained(x, y, "unexplained", None, 0, "the rays are the same", math.inf, 0.0)
         most = max(causes, key=lambda cause: (cause.verdict() == "unexplained" and cause.amount > LIMIT, cause.amount))
         ray, near = most.ray, most.near
-        return Explained(x, y, most.verdict(), ray["kind"], ray["depth"], most.what, near.margin, near.error)
+        return Explained(x, y, most.verdict(), ray.kind, ray.depth, most.what, near.margin, near.error)
 
     # ---- One ray in both trees
 
-    def _causes(self, pair: Pair, error: _Error, start: Ray | None) -> Iterator[_Cause]:
+    def _causes(self, pair: Pair, error: _Error, start: HitRecord | None) -> Iterator[_Cause]:
         """What differs, first in a ray that starts at the hit `start`, then in what follows from it."""
         ray, other = pair.reference, pair.test
         if ray is None or other is None:
             one = pair.either
-            amount = one["weight"] * max(map(abs, one["radiance"]))
-            short = abs(one["weight"] - self._cutoff) if self._same_limits else 0.0
+            amount = one.throughput * max(map(abs, one.radiance))
+            short = abs(one.throughput - self._cutoff) if self._same_limits else 0.0
             yield _Cause("ray not followed", "a ray is traced", one, amount, _Margin(short, 0.0, self._rounding))
             return
-        hits = [hit for hit in (ray["hit"], other["hit"]) if hit is not None]
+        hits = [hit for hit in (ray.hit, other.hit) if hit is not None]
         if not hits:
             return
         error = _Error(
-            min(error.origin, TWICE * math.dist(ray["origin"], other["origin"])),
-            min(error.direction, TWICE * math.dist(ray["direction"], other["direction"])),
+            min(error.origin, TWICE * math.dist(ray.origin, other.origin)),
+            min(error.direction, TWICE * math.dist(ray.direction, other.direction)),
         )
-        reach = inherited = error.origin + max(hit["t"] for hit in hits) * error.direction
-        own = self._own(ray["origin"], hits, start)
-        if len(hits) == 1 or any(hits[0][key] != hits[1][key] for key in ("object", "plane", "entering")):
+        reach = inherited = error.origin + max(hit.t for hit in hits) * error.direction
+        own = self._own(ray.origin, hits, start)
+        if len(hits) == 1 or _side(hits[0]) != _side(hits[1]):
             near = min(self._hit_margins(ray, hits, start, inherited, own), key=_share)
-            yield _Cause("silhouette", "object hit", ray, ray["weight"] * _largest(ray, other, "radiance"), near)
+            yield _Cause("silhouette", "object hit", ray, ray.throughput * _largest(ray.radiance, other.radiance), near)
             return
         hit = hits[0]
         spread = self._spread(ray, hit)
         own = spread(own)
-        inherited = min(spread(inherited), TWICE * math.dist(hit["point"], hits[1]["point"]))
-        if _largest(hit, hits[1], "pigment") > 2**-20:
-            pigment = self._scene.pigments[self._scene.objects[hit["object"]].pigment]
-            near = _Margin(tile_margin(pigment, np.array(hit["point"])), inherited, own)
-            yield _Cause("checker or texel edge", "pigment", ray, ray["weight"] * _largest(ray, other, "local"), near)
+        inherited = min(spread(inherited), TWICE * math.dist(hit.point, hits[1].point))
+        if _largest(hit.pigment, hits[1].pigment) > 2**-20:
+            pigment = self._scene.pigments[self._scene.objects[hit.object].pigment]
+            margin = pigment_kind(pigment).edge_margin(pigment, np.array(hit.point))
+            near = _Margin(margin, inherited, own)
+            yield _Cause(
+                "checker or texel edge", "pigment", ray, ray.throughput * _largest(ray.local, other.local), near
+            )
         yield from self._light_causes(ray, hits, inherited, own)
-        if all(_lit(one) == _lit(two) for one, two in zip(hit["lights"], hits[1]["lights"], strict=True)):
+        if all(one.lit == two.lit for one, two in zip(hit.lights, hits[1].lights, strict=True)):
             # Nothing but a highlight, or light that falls off, at another place.
-            lights = zip(hit["lights"], hits[1]["lights"], strict=True)
-            amount = sum(_largest(one, two, term) for one, two in lights for term in TERMS)
-            if ray["weight"] * amount > LIMIT / 4:
-                near = _Margin(math.dist(hit["point"], hits[1]["point"]), spread(reach), own)
-                yield _Cause("deep reflection", "light", ray, ray["weight"] * amount, near)
-        if hit["total_reflection"] != hits[1]["total_reflection"]:
+            lights = zip(hit.lights, hits[1].lights, strict=True)
+            amount = sum(_largest(*pair) for one, two in lights for pair in _terms(one, two))
+            if ray.throughput * amount > LIMIT / 4:
+                near = _Margin(math.dist(hit.point, hits[1].point), spread(reach), own)
+                yield _Cause("deep reflection", "light", ray, ray.throughput * amount, near)
+        if hit.total_reflection != hits[1].total_reflection:
             near = self._critical_margin(ray, hit, error.direction, inherited, own)
-            amount = ray["weight"] * _largest(ray, other, "radiance")
+            amount = ray.throughput * _largest(ray.radiance, other.radiance)
             yield _Cause("critical angle", "total reflection", ray, amount, near)
             return
         for child in pair.children:
             following = self._bounced(ray, hit, child.either, error.direction + self._rounding, inherited + own)
             yield from self._causes(child, following, hit)
 
-    def _own(self, origin: Sequence[float], hits: Sequence[Ray], start: Ray | None) -> float:
+    def _own(self, origin: Sequence[float], hits: Sequence[HitRecord], start: HitRecord | None) -> float:
         """How far the line of a ray is off the surfaces that it meets, by roundings there and by where it starts."""
-        scale = max(max(map(abs, origin)) + hit["t"] for hit in hits)
-        scale = max([scale, *(self._extents[hit["object"]] for hit in hits)])
-        off: float = self._rounding * scale + max(self._deviations[hit["object"]] for hit in hits)
-        return off if start is None else off + self._moved * _reach(start) + 2 * self._deviations[start["object"]]
+        scale = max(max(map(abs, origin)) + hit.t for hit in hits)
+        scale = max([scale, *(self._extents[hit.object] for hit in hits)])
+        off: float = self._rounding * scale + max(self._deviations[hit.object] for hit in hits)
+        return off if start is None else off + self._moved * _reach(start) + 2 * self._deviations[start.object]
 
     def _shape(self, index: int) -> Shape:
         return self._scene.objects[index].shape
 
     def _hit_margins(
-        self, ray: Ray, hits: Sequence[Ray], start: Ray | None, inherited: float, own: float
+        self, ray: RayRecord, hits: Sequence[HitRecord], start: HitRecord | None, inherited: float, own: float
     ) -> Iterator[_Margin]:
-        o, d = np.array(ray["origin"]), np.array(ray["direction"])
+        o, d = np.array(ray.origin), np.array(ray.direction)
         hidden = self._hidden * _reach(start) if start is not None else 0.0
-        for index in {hit["object"] for hit in hits}:
+        for index in {hit.object for hit in hits}:
             shape = self._shape(index)
             yield _Margin(min(silhouette_margin(shape, o, d), edge_margin(shape, o, d)), inherited, own)
             yield _Margin(
-                surface_margin(shape, o, start is not None and index == start["object"]), inherited, own + hidden
+                surface_margin(shape, o, start is not None and index == start.object), inherited, own + hidden
             )
-        if len(hits) == 2 and hits[0]["object"] != hits[1]["object"]:
+        if len(hits) == 2 and hits[0].object != hits[1].object:
             a, b = (
-                min(crossings(self._shape(hit["object"]), o, d), key=lambda c, t=hit["t"]: abs(c.t - t))  # type: ignore[misc]
+                min(intersections(self._shape(hit.object), o, d), key=lambda c, t=hit.t: abs(c.t - t))  # type: ignore[misc]
                 for hit in hits
             )
             yield _Margin(tie_margin(a, b), inherited, own)
 
     # ---- At a surface that both trees meet
 
-    def _light_causes(self, ray: Ray, hits: Sequence[Ray], inherited: float, own: float) -> Iterator[_Cause]:
-        p = np.array(hits[0]["point"])
-        index = hits[0]["object"]
-        for one, other in zip(hits[0]["lights"], hits[1]["lights"], strict=True):
-            if _lit(one) == _lit(other):
+    def _light_causes(
+        self, ray: RayRecord, hits: Sequence[HitRecord], inherited: float, own: float
+    ) -> Iterator[_Cause]:
+        p = np.array(hits[0].point)
+        index = hits[0].object
+        for one, other in zip(hits[0].lights, hits[1].lights, strict=True):
+            if one.lit == other.lit:
                 continue
-            to_light = np.array(self._scene.lights[one["light"]].position) - p
+            to_light = np.array(self._scene.lights[one.light].position) - p
             distance = float(np.linalg.norm(to_light))
             direction = to_light / distance
             # How far the light is above the horizon of the surface, which turns with the point.
             turn = 1 + self._curvature(index) * distance
             rounded = self._rounding * distance
             tilted = self._tilt(hits[0]) * distance
-            margins = [_Margin(abs(one["cosine"]) * distance, turn * inherited, turn * own + rounded + tilted)]
-            for blocker in {light["shadowed_by"] for light in (one, other)} - {None}:
+            margins = [_Margin(abs(one.cosine) * distance, turn * inherited, turn * own + rounded + tilted)]
+            for blocker in sorted({b for b in (one.shadowed_by, other.shadowed_by) if b is not None}):
                 shape = self._shape(blocker)
                 reach = _reach(hits[0])
                 less = own + self._rounding * max(self._extents[blocker], distance) + self._deviations[blocker]
@@ -346,59 +352,64 @@ class _Explainer:
                 margins.append(_Margin(near, inherited, less + self._hidden * reach))
                 margins += [
                     _Margin(abs((c.t - distance) * c.cosine), inherited, less + self._hidden * reach)
-                    for c in crossings(shape, p, direction)
+                    for c in intersections(shape, p, direction)
                 ]
-            amount = sum(_largest(one, other, term) for term in TERMS)
-            yield _Cause("shadow edge", "light seen", ray, ray["weight"] * amount, min(margins, key=_share))
+            amount = sum(_largest(*pair) for pair in _terms(one, other))
+            yield _Cause("shadow edge", "light seen", ray, ray.throughput * amount, min(margins, key=_share))
 
-    def _critical_margin(self, ray: Ray, hit: Ray, direction: float, inherited: float, own: float) -> _Margin:
+    def _critical_margin(
+        self, ray: RayRecord, hit: HitRecord, direction: float, inherited: float, own: float
+    ) -> _Margin:
         """Of the squared cosine behind the surface, whose sign decides."""
         cosine, eta = self._refraction(ray, hit)
-        turn, steep = self._curvature(hit["object"]), 2 * eta * eta * cosine
+        turn, steep = self._curvature(hit.object), 2 * eta * eta * cosine
         margin = abs(1 - eta * eta * (1 - cosine * cosine))
         return _Margin(margin, steep * (direction + turn * inherited), steep * turn * own + self._rounding * eta * eta)
 
-    def _spread(self, ray: Ray, hit: Ray) -> Callable[[float], float]:
+    def _spread(self, ray: RayRecord, hit: HitRecord) -> Callable[[float], float]:
         """What an error of the ray's line makes of the position of its hit."""
-        cosine = max(abs(float(np.dot(ray["direction"], hit["normal"]))), 1e-12)
-        shape = self._shape(hit["object"])
-        if isinstance(shape, Sphere):
-            return lambda off: min(off / cosine, off + math.sqrt(2 * shape.radius * off))
+        cosine = max(abs(float(np.dot(ray.direction, hit.normal))), 1e-12)
+        radius = self._radius(hit.object)
+        if radius < math.inf:
+            return lambda off: min(off / cosine, off + math.sqrt(2 * radius * off))
         return lambda off: off / cosine
+
+    def _radius(self, index: int) -> float:
+        """The smallest radius of curvature of an object."""
+        shape = self._shape(index)
+        return shape_kind(shape).radius_of_curvature(shape)
 
     def _curvature(self, index: int) -> float:
         """By what angle the normal turns in a unit of length."""
-        shape = self._shape(index)
-        return 1 / shape.radius if isinstance(shape, Sphere) else 0.0
+        return 1 / self._radius(index)
 
-    def _tilt(self, hit: Ray) -> float:
+    def _tilt(self, hit: HitRecord) -> float:
         """By what angle the normal at a hit may be off, where it is a triangle's."""
-        return self._tilts.get((hit["object"], hit["plane"]), 0.0)
+        return self._tilts.get((hit.object, hit.plane), 0.0)
 
-    def _refraction(self, ray: Ray, hit: Ray) -> tuple[float, float]:
+    def _refraction(self, ray: RayRecord, hit: HitRecord) -> tuple[float, float]:
         """The cosine before a surface, and the index on the ray's side over that behind."""
-        eta = self._etas[self._scene.objects[hit["object"]].finish]
-        cosine = abs(float(np.dot(ray["direction"], hit["normal"])))
-        return cosine, eta if hit["entering"] else 1 / eta
+        eta = self._etas[self._scene.objects[hit.object].finish]
+        cosine = abs(float(np.dot(ray.direction, hit.normal)))
+        return cosine, eta if hit.entering else 1 / eta
 
-    def _bounced(self, ray: Ray, hit: Ray, child: Ray, direction: float, off: float) -> _Error:
+    def _bounced(self, ray: RayRecord, hit: HitRecord, child: RayRecord, direction: float, off: float) -> _Error:
         """The error of a ray that leaves a surface where its origin is off by `off`, one of `direction` coming in."""
-        turned = self._curvature(hit["object"]) * off + self._tilt(hit) + self._rounding
+        turned = self._curvature(hit.object) * off + self._tilt(hit) + self._rounding
         off += self._moved * _reach(hit)
-        if child["kind"] == "reflected" or hit["total_reflection"]:
+        if child.kind == "reflected" or hit.total_reflection:
             return _Error(off, direction + 2 * turned + self._rounding)
         _, eta = self._refraction(ray, hit)
-        behind = max(abs(float(np.dot(child["direction"], hit["normal"]))), 1e-12)
+        behind = max(abs(float(np.dot(child.direction, hit.normal))), 1e-12)
         bent = eta * (direction + turned)
         return _Error(off, min(bent / behind, math.sqrt(2 * bent)) + turned + self._rounding)
 
 
 def _tilts(shape: Shape, mesh: "PolyhedronMesh") -> Iterator[tuple[int, float]]:
     """For each plane that has triangles the largest angle between it and one of those, made of float32 corners."""
-    assert isinstance(shape, Polyhedron)
     corners = mesh.vertices.astype(np.float32).astype(np.float64)[mesh.triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
-    normals = np.array([plane[:3] for plane in shape.planes])[mesh.planes]
+    normals = np.array([plane[:3] for plane in shape_kind(shape).planes(shape)])[mesh.planes]
     with np.errstate(invalid="ignore", divide="ignore"):
         sines = np.linalg.norm(np.cross(across, normals), axis=1)
         angles = np.arctan2(sines, np.einsum("ij,ij->i", across, normals))
@@ -406,9 +417,9 @@ def _tilts(shape: Shape, mesh: "PolyhedronMesh") -> Iterator[tuple[int, float]]:
         yield int(plane), float(angles[mesh.planes == plane].max())
 
 
-def _reach(hit: Ray) -> float:
+def _reach(hit: HitRecord) -> float:
     """The numbers that a hit's position was made of."""
-    return float(max(map(abs, hit["point"])) + hit["t"])
+    return float(max(map(abs, hit.point)) + hit.t)
 
 
 def _share(margin: _Margin) -> float:
@@ -416,18 +427,18 @@ def _share(margin: _Margin) -> float:
     return margin.margin / margin.error if margin.error > 0 else math.inf
 
 
-def _lit(light: Ray) -> bool:
-    return light["cosine"] > 0 and light["shadowed_by"] is None
+def _side(hit: HitRecord) -> tuple[int, int | None, bool]:
+    """Of which surface."""
+    return hit.object, hit.plane, hit.entering
 
 
-def _largest(one: Ray, other: Ray, color: str) -> float:
-    """Largest difference of a colour; infinite where it is no number."""
-    difference = max(abs(a - b) for a, b in zip(one[color], other[color], strict=True))
+def _terms(one: LightRecord, other: LightRecord) -> Iterator[tuple[Triple, Triple]]:
+    """What either light adds, term by term."""
+    yield one.diffuse, other.diffuse
+    yield one.specular, other.specular
+
+
+def _largest(one: Triple, other: Triple) -> float:
+    """Largest difference of two colours; infinite where it is no number."""
+    difference = max(abs(a - b) for a, b in zip(one, other, strict=True))
     return difference if difference == difference else math.inf
-
-
-def _extent(shape: Shape) -> float:
-    """The largest number that a shape is made of."""
-    if isinstance(shape, Sphere):
-        return max(map(abs, shape.center)) + shape.radius
-    return max(abs(plane[3]) / math.hypot(*plane[:3]) for plane in shape.planes)

@@ -5,14 +5,16 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal
 
-from converter.compare.rays import Pair, Ray, walk
+from converter.compare.rays import Pair, walk
+from converter.renderers.records import LightRecord, RayRecord
 from converter.scene.model import Scene
+from converter.shapes.table import shape_kind
 
 WIDTH = 120
 """Columns that the text is made for."""
 DEEPEST_INDENT = 5
 """Depth up to which rays are indented; deeper ones have it behind their name."""
-HEADER = ("ray", "weight", "hit (line)", "t", "point", "normal", "side", "local colour")
+HEADER = ("ray", "throughput", "hit (line)", "t", "point", "normal", "side", "local colour")
 
 Side = Literal["both", "reference", "test"]
 
@@ -29,7 +31,7 @@ class Line:
 def object_name(scene: Scene, index: int, plane: int | None = None) -> str:
     """`#11 plane 2 (27)`: an object by its index, a plane of it, and the line of the file it starts on."""
     o = scene.objects[index]
-    shape = type(o.shape).__name__.lower() if plane is None else f"plane {plane}"
+    shape = shape_kind(o.shape).NAME if plane is None else f"plane {plane}"
     return f"#{index} {shape}" + (f" ({o.line})" if o.line else "")
 
 
@@ -45,7 +47,7 @@ def list_rays(pairs: Sequence[Pair], scene: Scene, letters: tuple[str, str], fir
     """
     entries: list[tuple[Side, bool, tuple[str, ...], list[str]]] = []
     for pair in walk(pairs):
-        sides: Iterable[tuple[Side, Ray | None]] = [("both", pair.either)]
+        sides: Iterable[tuple[Side, RayRecord | None]] = [("both", pair.either)]
         if pair.unequal:
             sides = [("reference", pair.reference), ("test", pair.test)]
         for side, ray in sides:
@@ -77,22 +79,22 @@ def _aligned(cells: Sequence[str], widths: Sequence[int]) -> str:
     return "  ".join(cell.ljust(width) for cell, width in zip(cells, widths, strict=True)).rstrip()
 
 
-def _row(ray: Ray, scene: Scene) -> tuple[str, ...]:
-    depth = ray["depth"]
-    kind = " " * min(depth, DEEPEST_INDENT) + ray["kind"] + (f" {depth}" if depth > DEEPEST_INDENT else "")
-    weight = f"{ray['weight']:.3g}"
-    local = _numbers(ray["local"], ".3f")
-    hit = ray["hit"]
+def _row(ray: RayRecord, scene: Scene) -> tuple[str, ...]:
+    depth = ray.depth
+    kind = " " * min(depth, DEEPEST_INDENT) + ray.kind + (f" {depth}" if depth > DEEPEST_INDENT else "")
+    throughput = f"{ray.throughput:.3g}"
+    local = _numbers(ray.local, ".3f")
+    hit = ray.hit
     if hit is None:
-        return (kind, weight, "nothing", "", "", "", "", local)
+        return (kind, throughput, "nothing", "", "", "", "", local)
     return (
         kind,
-        weight,
-        object_name(scene, hit["object"], hit["plane"]),
-        f"{hit['t']:.5g}",
-        _point(hit["point"]),
-        _numbers(hit["normal"], ".2f"),
-        "out" if hit["entering"] else "in",
+        throughput,
+        object_name(scene, hit.object, hit.plane),
+        f"{hit.t:.5g}",
+        _point(hit.point),
+        _numbers(hit.normal, ".2f"),
+        "out" if hit.entering else "in",
         local,
     )
 
@@ -108,27 +110,27 @@ def _filled(remarks: Sequence[str], width: int) -> list[str]:
     return lines
 
 
-def _remarks(ray: Ray, scene: Scene) -> list[str]:
+def _remarks(ray: RayRecord, scene: Scene) -> list[str]:
     """What a line of the table has no room for."""
-    hit = ray["hit"]
-    result = [] if hit is None else [_light(light, scene) for light in hit["lights"]]
-    if hit is not None and hit["total_reflection"]:
+    hit = ray.hit
+    result = [] if hit is None else [_light(light, scene) for light in hit.lights]
+    if hit is not None and hit.total_reflection:
         result.append("total internal reflection: the transmitted ray follows the mirror direction")
-    if ray["dropped"]:
+    if ray.dropped:
         reasons = {"cutoff": "below the cut-off", "depth": "at the depth limit"}
-        dropped = (f"{kind} ({reasons.get(why, why)})" for kind, why in ray["dropped"].items())
+        dropped = (f"{kind} ({reasons.get(why, why)})" for kind, why in ray.dropped.items())
         result.append(f"dropped: {', '.join(dropped)}")
     return result
 
 
-def _light(light: Ray, scene: Scene) -> str:
-    name = f"light {light['light'] + 1}"  # the file's first is the ambient light
-    if light["cosine"] <= 0:
+def _light(light: LightRecord, scene: Scene) -> str:
+    name = f"light {light.light + 1}"  # the file's first is the ambient light
+    if light.cosine <= 0:
         return f"{name} behind"
-    if light["shadowed_by"] is not None:
-        return f"{name} shadowed by {object_name(scene, light['shadowed_by'])}"
-    adds = [a + b for a, b in zip(light["diffuse"], light["specular"], strict=True)]
-    return f"{name} adds {_numbers(adds, '.3f')} at n.l {light['cosine']:.3f}"
+    if light.shadowed_by is not None:
+        return f"{name} shadowed by {object_name(scene, light.shadowed_by)}"
+    adds = [a + b for a, b in zip(light.diffuse, light.specular, strict=True)]
+    return f"{name} adds {_numbers(adds, '.3f')} at n.l {light.cosine:.3f}"
 
 
 def _point(point: Sequence[float]) -> str:

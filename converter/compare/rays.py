@@ -1,12 +1,11 @@
 """Two ray trees of the same pixel laid side by side, as the renderers' `trace_pixel` gives them."""
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from itertools import zip_longest
 from typing import Any
 
-Ray = Mapping[str, Any]
-"""One ray with its successors, as `NativeRenderer.trace_pixel` documents it."""
+from converter.renderers.records import HitRecord, LightRecord, RayRecord
 
 TOLERANCE = 1e-4
 """Lengths may differ by this share of the distances about, directions and colours by this much: more than float32
@@ -26,20 +25,20 @@ class Unequal:
 class Pair:
     """The same ray in both trees; None in a tree where it is missing."""
 
-    reference: Ray | None
-    test: Ray | None
+    reference: RayRecord | None
+    test: RayRecord | None
     unequal: list[Unequal] = field(default_factory=list)
     children: list["Pair"] = field(default_factory=list)
 
     @property
-    def either(self) -> Ray:
+    def either(self) -> RayRecord:
         """The ray, from the reference's tree if it is there."""
         ray = self.test if self.reference is None else self.reference
         assert ray is not None, "a pair has at least one ray"
         return ray
 
 
-def pair_trees(reference: Sequence[Ray], test: Sequence[Ray]) -> list[Pair]:
+def pair_trees(reference: Sequence[RayRecord], test: Sequence[RayRecord]) -> list[Pair]:
     """Pair the primary rays of a pixel in their order, and what follows from them by its kind."""
     return [_pair(one, other) for one, other in zip_longest(reference, test)]
 
@@ -56,13 +55,13 @@ def first_unequal(pairs: Sequence[Pair]) -> Pair | None:
     return next((pair for pair in walk(pairs) if pair.unequal), None)
 
 
-def _pair(reference: Ray | None, test: Ray | None) -> Pair:
+def _pair(reference: RayRecord | None, test: RayRecord | None) -> Pair:
     pair = Pair(reference, test)
     if reference is None or test is None:
         pair.unequal.append(Unequal("traced", *(None if ray is None else "yes" for ray in (reference, test))))
     else:
         pair.unequal += _ray_differences(reference, test)
-    children = [{child["kind"]: child for child in ray["children"]} if ray else {} for ray in (reference, test)]
+    children = [{child.kind: child for child in ray.children} if ray else {} for ray in (reference, test)]
     pair.children = [
         _pair(children[0].get(kind), children[1].get(kind))
         for kind in ("reflected", "transmitted")
@@ -71,35 +70,35 @@ def _pair(reference: Ray | None, test: Ray | None) -> Pair:
     return pair
 
 
-def _ray_differences(reference: Ray, test: Ray) -> list[Unequal]:
+def _ray_differences(reference: RayRecord, test: RayRecord) -> list[Unequal]:
     comparison = _Comparison()
-    hits = reference["hit"], test["hit"]
-    scale = max([*map(abs, reference["origin"]), *(hit["t"] for hit in hits if hit)])
-    comparison.near("weight", reference["weight"], test["weight"])
-    comparison.near("origin", reference["origin"], test["origin"], scale)
-    comparison.near("direction", reference["direction"], test["direction"])
-    if hits[0] is None or hits[1] is None:
-        comparison.same("object hit", *(hit and hit["object"] for hit in hits))
+    one, other = reference.hit, test.hit
+    scale = max([*map(abs, reference.origin), *(hit.t for hit in (one, other) if hit)])
+    comparison.near("throughput", reference.throughput, test.throughput)
+    comparison.near("origin", reference.origin, test.origin, scale)
+    comparison.near("direction", reference.direction, test.direction)
+    if one is None or other is None:
+        comparison.same("object hit", *(hit and hit.object for hit in (one, other)))
     else:
-        _compare_hits(comparison, *hits, scale)
-    comparison.near("local colour", reference["local"], test["local"])
+        _compare_hits(comparison, one, other, scale)
+    comparison.near("local colour", reference.local, test.local)
     for kind in ("reflected", "transmitted"):
-        comparison.same(f"{kind} ray dropped", *(ray["dropped"].get(kind) for ray in (reference, test)))
+        comparison.same(f"{kind} ray dropped", *(ray.dropped.get(kind) for ray in (reference, test)))
     return comparison.unequal
 
 
-def _compare_hits(comparison: "_Comparison", reference: Ray, test: Ray, scale: float) -> None:
-    comparison.same("object hit", reference["object"], test["object"])
-    comparison.same("plane", reference["plane"], test["plane"])
-    comparison.near("t", reference["t"], test["t"], scale)
-    comparison.near("point", reference["point"], test["point"], max([scale, *map(abs, reference["point"])]))
-    comparison.near("normal", reference["normal"], test["normal"])
-    comparison.same("entering", reference["entering"], test["entering"])
-    if reference["object"] != test["object"]:
+def _compare_hits(comparison: "_Comparison", reference: HitRecord, test: HitRecord, scale: float) -> None:
+    comparison.same("object hit", reference.object, test.object)
+    comparison.same("plane", reference.plane, test.plane)
+    comparison.near("t", reference.t, test.t, scale)
+    comparison.near("point", reference.point, test.point, max([scale, *map(abs, reference.point)]))
+    comparison.near("normal", reference.normal, test.normal)
+    comparison.same("entering", reference.entering, test.entering)
+    if reference.object != test.object:
         return  # all else follows from that
-    comparison.near("pigment", reference["pigment"], test["pigment"])
-    comparison.same("total reflection", reference["total_reflection"], test["total_reflection"])
-    lights = [{light["light"]: light for light in hit["lights"]} for hit in (reference, test)]
+    comparison.near("pigment", reference.pigment, test.pigment)
+    comparison.same("total reflection", reference.total_reflection, test.total_reflection)
+    lights = [{light.light: light for light in hit.lights} for hit in (reference, test)]
     for i in sorted(lights[0].keys() | lights[1].keys()):
         one, other = lights[0].get(i), lights[1].get(i)
         name = f"light {i + 1}"
@@ -109,18 +108,16 @@ def _compare_hits(comparison: "_Comparison", reference: Ray, test: Ray, scale: f
             _compare_lights(comparison, name, one, other)
 
 
-def _compare_lights(comparison: "_Comparison", name: str, reference: Ray, test: Ray) -> None:
-    comparison.near(f"{name}, n.l", reference["cosine"], test["cosine"])
-    if max(reference["cosine"], test["cosine"]) <= 0:
+def _compare_lights(comparison: "_Comparison", name: str, reference: LightRecord, test: LightRecord) -> None:
+    comparison.near(f"{name}, n.l", reference.cosine, test.cosine)
+    if max(reference.cosine, test.cosine) <= 0:
         return  # behind the surface: what else lies in its way does not matter
-    blockers = reference["shadowed_by"], test["shadowed_by"]
+    blockers = reference.shadowed_by, test.shadowed_by
     if (blockers[0] is None) != (blockers[1] is None):  # which of several is found first is no difference
         comparison.same(f"{name}, shadowed by", *blockers)
-    comparison.near(
-        f"{name}, attenuation", reference["attenuation"], test["attenuation"], abs(reference["attenuation"])
-    )
-    for what in ("diffuse", "specular"):
-        comparison.near(f"{name}, {what}", reference[what], test[what])
+    comparison.near(f"{name}, attenuation", reference.attenuation, test.attenuation, abs(reference.attenuation))
+    comparison.near(f"{name}, diffuse", reference.diffuse, test.diffuse)
+    comparison.near(f"{name}, specular", reference.specular, test.specular)
 
 
 class _Comparison:

@@ -1,14 +1,16 @@
 """The interface between a renderer and everything that uses one."""
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol
+from typing import TYPE_CHECKING, Any, Protocol, TypeGuard
 
 from converter.scene.model import Scene
 from converter.scene.settings import Settings
 
 if TYPE_CHECKING:
     from collections.abc import Buffer  # type: ignore[attr-defined]  # Python 3.12; a memoryview or a NumPy array here
+
+    from converter.renderers.records import PixelRecord
 
 Progress = Callable[[float], None]
 """Called now and then, from the calling thread, with the finished share of the picture (0..1)."""
@@ -56,3 +58,27 @@ class Renderer(Protocol):
 
         """
         ...
+
+
+class RayTeller(Renderer, Protocol):
+    """A renderer that tells its rays."""
+
+    def trace_pixel(self, scene: Scene, settings: Settings, x: int, y: int) -> "PixelRecord":
+        """Trace one pixel, column `x` and row `y` from the top left corner.
+
+        Raises:
+            RendererUnavailable: it cannot run here.
+            ValueError: a texture cannot be read, `settings` make no sense, or there are more than `MOST_RAYS` rays.
+            IndexError: the pixel lies outside the picture.
+
+        """
+        ...
+
+    def trace_pixels(self, scene: Scene, settings: Settings, pixels: Sequence[tuple[int, int]]) -> "list[PixelRecord]":
+        """Trace pixels (column, row); a record for each."""
+        ...
+
+
+def tells_rays(renderer: Renderer) -> TypeGuard[RayTeller]:
+    """Whether a renderer tells its rays."""
+    return hasattr(renderer, "trace_pixel")

@@ -5,11 +5,15 @@ Importing this loads no renderer.
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
+from fractions import Fraction
+from functools import cache
 from typing import Any, Literal
 
 from converter.renderers.base import Renderer
-from converter.scene.model import Polyhedron, Scene
-from converter.scene.settings import Settings
+from converter.scene.depth import MAX_DEPTH
+from converter.scene.model import Scene
+from converter.scene.settings import MOST_THREADS, Settings
+from converter.shapes.table import shape_kind
 
 Family = Literal["native", "mitsuba", "povray"]
 Arithmetic = Literal["double", "float", "mesh", "offset", "ulp"]
@@ -18,10 +22,8 @@ off by Mitsuba's offset, or by units in the last place."""
 
 MOST_COMPILED = 128
 """Surfaces up to which a method that compiles each by itself is tried."""
-DEEPEST = 16
-"""`native-depth-1` to this one are methods ..."""
 USUAL_DEPTHS = (1, 2, 4, 8, 16)
-"""... and these are usual."""
+"""Bounces of the methods that studies run."""
 
 
 @dataclass(frozen=True, slots=True, eq=False)
@@ -79,24 +81,68 @@ class Method:
         """Why the method is not for `scene`; None if it is."""
         if self.most_surfaces is None:
             return None
-        count = sum(len(o.shape.planes) if isinstance(o.shape, Polyhedron) else 1 for o in scene.objects)
+        count = sum(shape_kind(o.shape).count(o.shape) for o in scene.objects)
         if count <= self.most_surfaces:
             return None
         return f"{count} spheres and planes would take too long to compile"
 
 
 def find_method(name: str) -> Method:
-    """The method of that name.
+    """The method of that name: one of the table, or one with other settings, as in `native:max_depth=4:cutoff=1/64`.
 
     Raises:
-        ValueError: there is none; the message names one like it.
+        ValueError: there is none; the message names one like it, or the settings that there are.
 
     """
-    if name not in METHODS:
+    if name in METHODS:
+        return METHODS[name]
+    base, *changes = name.split(":")
+    if base not in METHODS:
         from converter.scene.errors import did_you_mean
 
-        raise ValueError(f"there is no method {name!r}{did_you_mean(name, tuple(METHODS))}")
-    return METHODS[name]
+        raise ValueError(f"there is no method {base!r}{did_you_mean(base, tuple(METHODS))}")
+    return _with_settings(METHODS[base], tuple(changes))
+
+
+@cache  # so that a method is the same one whenever it is named
+def _with_settings(method: Method, texts: tuple[str, ...]) -> Method:
+    changes = dict(method.changes)
+    for text in texts:
+        key, _, value = text.partition("=")
+        if key not in _SETTINGS:
+            raise ValueError(f"{method.name} has no setting {key!r}: expected {', '.join(_SETTINGS)}")
+        what, read = _SETTINGS[key]
+        try:
+            changes[key] = read(value)
+        except (ValueError, ZeroDivisionError):
+            raise ValueError(f"{key} must be {what}, found {value!r}") from None
+    name = ":".join((method.name, *texts))
+    return replace(method, name=name, use=f"{method.name} with other settings", changes=changes, usual=False)
+
+
+def _within(least: int, most: int) -> Callable[[str], int]:
+    def read(text: str) -> int:
+        value = int(text)
+        if not least <= value <= most:
+            raise ValueError
+        return value
+
+    return read
+
+
+def _share(text: str) -> float:
+    value = float(Fraction(text))
+    if value < 0:
+        raise ValueError
+    return value
+
+
+_SETTINGS: Mapping[str, tuple[str, Callable[[str], Any]]] = {
+    "max_depth": (f"a whole number from 0 to {MAX_DEPTH}", _within(0, MAX_DEPTH)),
+    "cutoff": ("a number or a fraction from 0 on", _share),
+    "threads": (f"a whole number from 1 to {MOST_THREADS}", _within(1, MOST_THREADS)),
+}
+"""Settings that a method's name may have, what their values are, and how these are read."""
 
 
 # ------------------------------------------------------------------------------------------------------ the renderers
@@ -176,20 +222,20 @@ def _native_methods() -> Iterator[Method]:
     yield method("native-long-double", "to check native itself, tens of times slower", precision="long double")
     yield method("native-brute", "tries every object for every ray: to check the hierarchy", search="brute")
     yield method("native-bvh", "a hierarchy over the objects, however few they are", search="bvh")
-    yield method("native-1-thread", "leaves the other cores alone", {"threads": 1})
+    yield method("native:threads=1", "leaves the other cores alone", {"threads": 1})
 
 
 def _following_methods() -> Iterator[Method]:
-    def method(name: str, use: str, usual: bool = True, **changes: Any) -> Method:
-        return Method(name, "native", "the native tracer, following more rays or fewer", use, {}, changes, usual=usual)
+    def method(name: str, use: str, **changes: Any) -> Method:
+        return Method(name, "native", "the native tracer, following more rays or fewer", use, {}, changes)
 
-    yield method("native-cutoff-0", "drops no ray for its weight, but may for its depth: for figures", cutoff=0.0)
-    yield method("native-cutoff-4096", "drops rays below 1/4096: where dark parts will be brightened", cutoff=1 / 4096)
-    yield method("native-cutoff-512", "drops rays below 1/512, hardly seen in 8 bits: the default", cutoff=1 / 512)
-    yield method("native-cutoff-64", "drops rays below 1/64: a preview", cutoff=1 / 64)
-    for bounces in range(1, DEEPEST + 1):
+    yield method("native:cutoff=0", "drops no ray for its weight, but may for its depth: for figures", cutoff=0.0)
+    yield method("native:cutoff=1/4096", "drops rays below 1/4096: dark parts can be brightened", cutoff=1 / 4096)
+    yield method("native:cutoff=1/512", "drops rays below 1/512, hardly seen in 8 bits: the default", cutoff=1 / 512)
+    yield method("native:cutoff=1/64", "drops rays below 1/64: a preview", cutoff=1 / 64)
+    for bounces in USUAL_DEPTHS:
         use = f"follows a ray for {bounces} bounce{'s' if bounces > 1 else ''} at most"
-        yield method(f"native-depth-{bounces}", use, bounces in USUAL_DEPTHS, max_depth=bounces)
+        yield method(f"native:max_depth={bounces}", use, max_depth=bounces)
 
 
 def _mitsuba_methods() -> Iterator[Method]:
@@ -212,7 +258,7 @@ def _mitsuba_methods() -> Iterator[Method]:
     yield method(
         "mitsuba-offset", "Embree's hits and Mitsuba's own ray offset: what Mitsuba alone does", intersections="offset"
     )
-    yield method("mitsuba-1-thread", "leaves the other cores alone", {"threads": 1})
+    yield method("mitsuba:threads=1", "leaves the other cores alone", {"threads": 1})
     yield method("mitsuba-cuda", "on the GPU: large pictures", variant="cuda_ad_rgb")
 
 
@@ -238,4 +284,4 @@ METHODS: Mapping[str, Method] = {
     for methods in (_native_methods, _following_methods, _mitsuba_methods, _tessellated_methods, _povray_methods)
     for method in methods()
 }
-"""Every method by its name, the groups together."""
+"""Every method that is listed, by its name, the groups together; `find_method` knows these with other settings, too."""

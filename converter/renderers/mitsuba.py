@@ -8,6 +8,7 @@ from dataclasses import dataclass
 from typing import Any
 
 from converter.renderers.base import Interrupted, Progress, RendererUnavailable, Rendering
+from converter.renderers.records import PixelRecord
 from converter.scene.model import Scene
 from converter.scene.settings import Settings
 from converter.to_mitsuba.integrator import Intersections, RayPrecision
@@ -72,17 +73,12 @@ class MitsubaRenderer:
             raise Interrupted(rendering()) from None
         return rendering()
 
-    def trace_pixel(self, scene: Scene, settings: Settings, x: int, y: int) -> dict[str, Any]:
-        """Trace one pixel; the result is what `NativeRenderer.trace_pixel` documents."""
+    def trace_pixel(self, scene: Scene, settings: Settings, x: int, y: int) -> PixelRecord:
+        """Trace one pixel, as `RayTeller` has it."""
         return self.trace_pixels(scene, settings, [(x, y)])[0]
 
-    def trace_pixels(self, scene: Scene, settings: Settings, pixels: Sequence[tuple[int, int]]) -> list[dict[str, Any]]:
-        """Trace pixels (column, row), which is faster together; a result for each, as `trace_pixel` has it.
-
-        Raises:
-            ValueError: there are more than 2^20 rays.
-
-        """
+    def trace_pixels(self, scene: Scene, settings: Settings, pixels: Sequence[tuple[int, int]]) -> list[PixelRecord]:
+        """Trace pixels, as `RayTeller` has it; faster together."""
         self._start()
         from converter.renderers.mitsuba_pixel import trace_pixels
 

@@ -1,23 +1,22 @@
-"""The ray trees of some pixels in Mitsuba, built with the integrator's own steps, all rays of a bounce at a time."""
+"""The ray trees of some pixels in Mitsuba, all rays of a bounce at a time.
 
-from collections.abc import Sequence
+The integrator's own steps say what is met, what it sends back by itself, and which rays follow.
+"""
+
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
+from converter.renderers.records import MOST_RAYS, HitRecord, LightRecord, PixelRecord, RayKind, RayRecord
 from converter.scene.settings import Settings
 from mitsuba_plugins.integrators.rays import NOTHING, Ray, lanes
 
-Record = dict[str, Any]
 
-MOST_RAYS = 1 << 20
-"""In all the trees together."""
-
-
-def trace_pixels(scene: Any, settings: Settings, pixels: Sequence[tuple[int, int]]) -> list[Record]:
-    """Trace pixels (column, row) of a loaded scene; each result is what `NativeRenderer.trace_pixel` documents.
+def trace_pixels(scene: Any, settings: Settings, pixels: Sequence[tuple[int, int]]) -> list[PixelRecord]:
+    """Trace pixels (column, row) of a loaded scene.
 
     Raises:
         ValueError: there are more than `MOST_RAYS` rays.
@@ -34,8 +33,8 @@ def trace_pixels(scene: Any, settings: Settings, pixels: Sequence[tuple[int, int
     result = []
     for i, (column, row) in enumerate(pixels):
         samples = roots[i * len(offsets) : (i + 1) * len(offsets)]
-        color = tuple(sum(ray["radiance"][k] for ray in samples) / len(samples) for k in range(3))
-        result.append({"x": column, "y": row, "color": color, "rays": samples})
+        color = tuple(sum(ray.radiance[k] for ray in samples) / len(samples) for k in range(3))
+        result.append(PixelRecord(column, row, color, samples))
     return result
 
 
@@ -70,40 +69,49 @@ class _Rays:
             types.Float(spread),
         )
 
+    def places(self) -> tuple[list[tuple[float, ...]], list[tuple[float, ...]]]:
+        """The origin and the direction of each."""
+        origin, direction = self.columns[:2]
+        return _rows(origin, len(self)), _rows(direction, len(self))
+
     def __len__(self) -> int:
         return int(self.columns[-1].shape[-1])
 
 
 class _Tracer:
-    """Follows rays and writes down what happens to them."""
+    """Follows rays by the integrator's steps, and writes down what happens to them."""
 
     def __init__(self, integrator: Any) -> None:
         self._integrator = integrator
         self._cutoff = integrator.cutoff[0]
-        self._max_depth = integrator.max_depth[0]
 
-    def trees(self, rays: _Rays) -> list[Record]:
+    def trees(self, rays: _Rays) -> list[RayRecord]:
         """The rays' records, with everything below them."""
-        roots: list[Record] = [{"kind": "primary", "weight": 1.0, "depth": 0} for _ in range(len(rays))]
+        origin, direction = rays.places()
+        roots = [RayRecord("primary", 1.0, 0, o, d) for o, d in zip(origin, direction, strict=True)]
         level, count = roots, 0
-        levels = []
+        bounces = []
         while level:
             count += len(level)
             if count > MOST_RAYS:
                 raise ValueError(f"there are more than {MOST_RAYS} rays behind these pixels")
-            levels.append(level)
-            level, rays = self._follow(level, rays)
-        for level in reversed(levels):
-            for record in level:
-                radiance = record["local"]
-                for child, coefficient in zip(record["children"], record.pop("coefficients"), strict=True):
-                    radiance = tuple(a + coefficient * b for a, b in zip(radiance, child["radiance"], strict=True))
-                record["radiance"] = radiance
+            following, next_rays, coefficients = self._follow(level, rays)
+            bounces.append((level, coefficients))
+            level, rays = following, next_rays
+        for level, coefficients in reversed(bounces):
+            for record, factors in zip(level, coefficients, strict=True):
+                record.radiance = record.local
+                for child in record.children:
+                    pairs = zip(record.radiance, child.radiance, strict=True)
+                    record.radiance = tuple(a + factors[child.kind] * b for a, b in pairs)
         return roots
 
-    def _follow(self, level: list[Record], rays: _Rays) -> tuple[list[Record], _Rays]:
-        """Complete the records of rays, and begin those of the rays that follow."""
+    def _follow(self, level: list[RayRecord], rays: _Rays) -> tuple[list[RayRecord], _Rays, list[dict[RayKind, float]]]:
+        """Complete the records of rays of one depth; begin those of the rays that follow, and give these, and for each
+        of the former its kr and kt.
+        """
         import drjit as dr
+        import mitsuba as mi
 
         integrator, count = self._integrator, len(rays)
         ray = rays.ray(integrator.types)
@@ -115,61 +123,63 @@ class _Tracer:
         dr.make_opaque(finish, pigment)
         through, total = integrator.transmitted(ray, hit, finish.eta)
         mirrored = integrator.reflected(ray, hit)
-        dr.eval(through, mirrored, total)
-        lights = self._lights(ray, hit, finish, pigment, count)
+        depth = level[0].depth + 1
+        throughput = integrator.types.Float(np.array([record.throughput for record in level]))
+        mirror_throughput, mirrors, through_throughput, refracts = integrator.followed(
+            throughput, dr.opaque(mi.UInt32, depth, count), hit, finish
+        )
+        local = integrator.local_radiance(ray, hit, finish, pigment)
+        dr.eval(through, mirrored, total, local, mirror_throughput, mirrors, through_throughput, refracts)
 
-        origin, direction = _rows(ray.o, count), _rows(ray.d, count)
-        valid, t, index = _list(hit.valid, count), _list(hit.t, count), _list(hit.object, count)
-        plane, point, normal = _list(hit.record, count), _rows(hit.p, count), _rows(hit.n, count)
-        inside, total = _list(hit.inside, count), _list(total, count)
-        kr, kt = _list(finish.kr, count), _list(finish.kt, count)
+        local_colors, background = _rows(local, count), _rows(integrator.background, 1)[0]
+        hits = self._hits(ray, hit, finish, pigment, total, count)
+        for record, found, color in zip(level, hits, local_colors, strict=True):
+            record.hit = found
+            record.local = background if found is None else color
+        kinds: tuple[tuple[RayKind, Any, Any, Any, Ray], ...] = (
+            ("reflected", finish.kr, mirrors, mirror_throughput, mirrored),
+            ("transmitted", finish.kt, refracts, through_throughput, through),
+        )
+        coefficients: list[dict[RayKind, float]] = [{} for _ in level]
+        following: list[RayRecord] = []
+        chosen = []
+        for kind, coefficient, follows, throughputs, spawned in kinds:
+            secondary = _Rays.of(spawned, count)
+            which = []
+            columns = (_list(numbers, count) for numbers in (coefficient, follows, throughputs))
+            for i, (factor, goes_on, its_throughput) in enumerate(zip(*columns, strict=True)):
+                unbounded = level[i].throughput * factor  # by any limit
+                if level[i].hit is None or unbounded == 0:
+                    continue
+                if not goes_on:
+                    level[i].dropped[kind] = "cutoff" if unbounded < self._cutoff else "depth"
+                    continue
+                coefficients[i][kind] = factor
+                which.append((i, its_throughput))
+            chosen.append(secondary.chosen([i for i, _ in which]))
+            for (i, its_throughput), o, d in zip(which, *chosen[-1].places(), strict=True):
+                following.append(RayRecord(kind, its_throughput, depth, o, d))
+                level[i].children.append(following[-1])
+        return following, chosen[0].with_more(chosen[1]), coefficients
+
+    def _hits(
+        self, ray: Ray, hit: Any, finish: Any, pigment: Any, total: Any, count: int
+    ) -> Iterator[HitRecord | None]:
+        """What each ray hits; None where that is nothing."""
+        lights = self._lights(ray, hit, finish, pigment, count)
         answers = _list(finish.kd + finish.ks > 0, count)
-        colors, background = _rows(pigment, count), _rows(integrator.background, 1)[0]
-        ambient = _rows(finish.ka * integrator.ambient * pigment, count)
-        followed: dict[str, list[tuple[int, Record]]] = {"reflected": [], "transmitted": []}
-        for i, record in enumerate(level):
-            record |= {
-                "origin": origin[i],
-                "direction": direction[i],
-                "dropped": {},
-                "children": [],
-                "coefficients": [],
-            }
-            if not valid[i]:
-                record |= {"hit": None, "local": background}
+        transmits = _list(finish.kt > 0, count)
+        columns = (_list(numbers, count) for numbers in (hit.valid, hit.object, hit.record, hit.t, hit.inside, total))
+        vectors = (_rows(numbers, count) for numbers in (hit.p, hit.n, pigment))
+        for i, (valid, index, record, t, inside, past, point, normal, color) in enumerate(
+            zip(*columns, *vectors, strict=True)
+        ):
+            if not valid:
+                yield None
                 continue
             own = lights[i] if answers[i] else []
-            local = ambient[i]
-            for light in own:
-                local = tuple(a + b + c for a, b, c in zip(local, light["diffuse"], light["specular"], strict=True))
-            record["local"] = local
-            record["hit"] = {
-                "object": index[i],
-                "plane": self._plane(index[i], plane[i]),
-                "t": t[i],
-                "point": point[i],
-                "normal": normal[i],
-                "entering": not inside[i],
-                "pigment": colors[i],
-                "total_reflection": total[i] and kt[i] > 0,
-                "lights": own,
-            }
-            for kind, coefficient in (("reflected", kr[i]), ("transmitted", kt[i])):
-                weight = record["weight"] * coefficient
-                if weight == 0:
-                    continue
-                if weight < self._cutoff:
-                    record["dropped"][kind] = "cutoff"
-                elif record["depth"] + 1 > self._max_depth:
-                    record["dropped"][kind] = "depth"
-                else:
-                    child = {"kind": kind, "weight": weight, "depth": record["depth"] + 1}
-                    record["children"].append(child)
-                    record["coefficients"].append(coefficient)
-                    followed[kind].append((i, child))
-        successors = [_Rays.of(mirrored, count), _Rays.of(through, count)]
-        chosen = [s.chosen([i for i, _ in which]) for s, which in zip(successors, followed.values(), strict=True)]
-        return [child for which in followed.values() for _, child in which], chosen[0].with_more(chosen[1])
+            plane = self._plane(index, record)
+            yield HitRecord(index, plane, t, point, normal, not inside, color, past and transmits[i], own)
 
     def _plane(self, index: int, record: int) -> int | None:
         """The plane's index in the scene file."""
@@ -178,12 +188,12 @@ class _Tracer:
             return None
         return int(list(surface.planes)[record - self._integrator.first_records[index]])
 
-    def _lights(self, ray: Any, hit: Any, finish: Any, pigment: Any, count: int) -> list[list[Record]]:
+    def _lights(self, ray: Any, hit: Any, finish: Any, pigment: Any, count: int) -> list[list[LightRecord]]:
         """For each ray what each light adds."""
         import drjit as dr
         import mitsuba as mi
 
-        result: list[list[Record]] = [[] for _ in range(count)]
+        result: list[list[LightRecord]] = [[] for _ in range(count)]
         for k in range(self._integrator.light_count if self._integrator.shadows else 0):
             light = self._integrator.light(dr.opaque(mi.UInt32, k, count), ray, hit, finish, pigment, lanes(count))
             dr.eval(light)
@@ -191,17 +201,8 @@ class _Tracer:
             blocker = _list(light.blocker, count)
             diffuse, specular = _rows(light.diffuse, count), _rows(light.specular, count)
             for i, records in enumerate(result):
-                lit = cosine[i] > 0 and blocker[i] == NOTHING
-                records.append(
-                    {
-                        "light": k,
-                        "cosine": cosine[i],
-                        "shadowed_by": None if blocker[i] == NOTHING else blocker[i],
-                        "attenuation": attenuation[i],
-                        "diffuse": diffuse[i] if lit else (0.0, 0.0, 0.0),
-                        "specular": specular[i] if lit else (0.0, 0.0, 0.0),
-                    }
-                )
+                shadowed_by = None if blocker[i] == NOTHING else blocker[i]
+                records.append(LightRecord(k, cosine[i], shadowed_by, attenuation[i], diffuse[i], specular[i]))
         return result
 
 

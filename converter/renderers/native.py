@@ -5,13 +5,18 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from types import ModuleType
-from typing import Any, Literal
+from typing import TYPE_CHECKING, Any, Literal
 
+from converter.analysis.coplanar import with_planes_shared
+from converter.pigments.table import pigment_kind
 from converter.renderers.base import Interrupted, Progress, RendererUnavailable, Rendering
-from converter.scene.coplanar import with_planes_shared
-from converter.scene.model import Checker, Object, Pigment, Scene, Solid, Sphere
+from converter.scene.model import Scene
 from converter.scene.needs import SceneNeeds, scene_needs
 from converter.scene.settings import Settings
+from converter.shapes.table import shape_kind
+
+if TYPE_CHECKING:
+    from converter.renderers.records import PixelRecord, RayRecord
 
 Precision = Literal["float", "double", "long double"]
 Search = Literal["auto", "brute", "bvh"]
@@ -60,49 +65,22 @@ class NativeRenderer:
             raise Interrupted(rendering()) from None
         return rendering()
 
-    def trace_pixel(self, scene: Scene, settings: Settings, x: int, y: int) -> dict[str, Any]:
-        """Trace one pixel, column `x` and row `y` from the top-left corner, and return every ray of it.
-
-        Returns `{"x", "y", "color", "rays"}`: the pixel's colour as `render` leaves it, and its primary rays, each with
-
-            kind: "primary", "reflected" or "transmitted"
-            weight: product of the kr and kt that lead to it
-            depth: bounces before it
-            origin, direction: three numbers each; the direction is a unit vector
-            hit: None, or what it hits (below)
-            local: its colour without its successors'; the background's where nothing is hit
-            radiance: its colour with its successors', not multiplied by its own weight
-            dropped: {"reflected" | "transmitted": "cutoff" | "depth"}, successors that were not traced and why
-            children: its successors, rays like it
-
-        and for a hit
-
-            object, plane: indices in the scene and, in a polyhedron (else None), of the plane
-            t: distance along the ray
-            point, normal: where; the normal is the outward one
-            entering: whether the ray meets the surface from outside
-            pigment: colour of the material there
-            total_reflection: whether the transmitted ray follows the mirror direction
-            lights: for each light, {"light", "cosine", "shadowed_by", "attenuation", "diffuse", "specular"}: its
-                index, n.l, the index of an object in its way or None, what its colour is divided by, and what it adds
-
-        Raises:
-            RendererUnavailable: the native module is not built.
-            ValueError: a texture cannot be read, `settings` make no sense, or there are more than 2^20 rays.
-            IndexError: the pixel lies outside the picture.
-
-        """
+    def trace_pixel(self, scene: Scene, settings: Settings, x: int, y: int) -> "PixelRecord":
+        """Trace one pixel, as `RayTeller` has it; its colour is what `render` leaves there."""
         return self.trace_pixels(scene, settings, [(x, y)])[0]
 
-    def trace_pixels(self, scene: Scene, settings: Settings, pixels: Sequence[tuple[int, int]]) -> list[dict[str, Any]]:
-        """Trace pixels (column, row); a result for each, as `trace_pixel` has it."""
+    def trace_pixels(self, scene: Scene, settings: Settings, pixels: Sequence[tuple[int, int]]) -> "list[PixelRecord]":
+        """Trace pixels, as `RayTeller` has it."""
+        from converter.renderers.records import pixel_record  # late: a picture needs none
+
         needs = scene_needs(scene, settings)
         native_scene = build_scene(scene, needs)
         options = self._options(settings, needs)
         size = settings.width, settings.height
-        results = [native_module().trace_pixel(native_scene, *size, x, y, **options) for x, y in pixels]
+        trace = native_module().trace_pixel
+        results = [pixel_record(trace(native_scene, *size, x, y, **options)) for x, y in pixels]
         for result in results:
-            _restore_planes(result["rays"], needs)
+            _restore_planes(result.rays, needs)
         return results
 
     def _options(self, settings: Settings, needs: SceneNeeds) -> dict[str, Any]:
@@ -147,43 +125,21 @@ def build_scene(scene: Scene, needs: SceneNeeds) -> Any:
     if needs.lit:
         for light in scene.lights:
             native.add_light(light.position, light.color, light.attenuation)
-    pigments = {i: _add_pigment(native, scene.pigments[i]) for i in needs.pigments}
+    pigments = {i: pigment_kind(p).add_to(native, p) for i in needs.pigments for p in (scene.pigments[i],)}
     finishes = {}
     for i in needs.finishes:
         f = scene.finishes[i]
         finishes[i] = native.add_finish(f.ka, f.kd, f.ks, f.alpha, f.kr, f.kt, needs.etas[i])
-    for o, planes in zip(with_planes_shared(scene).objects, needs.planes, strict=True):
-        _add_object(native, o, planes, pigments[o.pigment], finishes[o.finish])
+    for o, facts in zip(with_planes_shared(scene).objects, needs.facts, strict=True):
+        shape_kind(o.shape).add_to(native, o.shape, facts, pigments[o.pigment], finishes[o.finish])
     return native
 
 
-def _add_pigment(native: Any, pigment: Pigment) -> int:
-    if isinstance(pigment, Solid):
-        index = native.add_solid(pigment.color)
-    elif isinstance(pigment, Checker):
-        index = native.add_checker(pigment.first, pigment.second, pigment.size)
-    else:
-        # The image library takes a while to import, and few scenes have textures.
-        from converter.images.texture import read_texture
-
-        texture = read_texture(pigment.file, pigment.place)
-        index = native.add_texmap(texture.width, texture.height, texture.texels, pigment.p0, pigment.p1)
-    return int(index)
-
-
-def _add_object(native: Any, o: Object, planes: tuple[int, ...], pigment: int, finish: int) -> None:
-    if isinstance(o.shape, Sphere):
-        native.add_sphere(pigment, finish, o.shape.center, o.shape.radius)
-    else:
-        native.add_polyhedron(pigment, finish, [o.shape.planes[k] for k in planes])
-
-
-def _restore_planes(rays: list[dict[str, Any]], needs: SceneNeeds) -> None:
+def _restore_planes(rays: "list[RayRecord]", needs: SceneNeeds) -> None:
     """Turn the tracer's plane numbers, which skip the planes that have no face, into the scene's."""
     pending = list(rays)
     while pending:
         ray = pending.pop()
-        pending.extend(ray["children"])
-        hit = ray["hit"]
-        if hit is not None and hit["plane"] is not None:
-            hit["plane"] = needs.planes[hit["object"]][hit["plane"]]
+        pending.extend(ray.children)
+        if ray.hit is not None and ray.hit.plane is not None:
+            ray.hit.plane = needs.planes[ray.hit.object][ray.hit.plane]

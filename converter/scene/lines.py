@@ -9,8 +9,10 @@ and the others are still read.
 from collections.abc import Callable
 from typing import Any
 
-from converter.scene.entries import CAMERA, FOVY, NOT_YET, PLANE, Lost, Numbers, Reader, announced, has_digits
+from converter.scene.entries import CAMERA, FOVY
 from converter.scene.errors import shown
+from converter.scene.fields import Lost, Numbers
+from converter.scene.reader import NOT_YET, Reader, has_digits
 from converter.scene.sections import (
     SECTIONS,
     Line,
@@ -22,6 +24,7 @@ from converter.scene.sections import (
     read_count,
 )
 from converter.scene.tokens import COMMENT_HINT, HUGE, LONG_LINE, SEPARATOR_HINT, found, hint, number, whole
+from converter.shapes.polyhedron import PLANE, announced
 
 
 def has_lines(reader: Reader) -> bool:

@@ -2,16 +2,12 @@
 
 import sys
 from dataclasses import dataclass
-from typing import TYPE_CHECKING
 
 from converter.scene.depth import DepthLimit, depth_limit, follows
-from converter.scene.model import Color, Finish, Polyhedron, Scene, Shape, Sphere, Vector
+from converter.scene.geometry import scene_facts
+from converter.scene.model import Color, Finish, Scene, Vector
 from converter.scene.settings import IorReading, Settings
-
-if TYPE_CHECKING:
-    from collections.abc import Sequence
-
-    from native_tracer.halfspaces import PolyhedronFacts
+from converter.shapes.kind import Facts
 
 
 @dataclass(frozen=True, slots=True)
@@ -27,6 +23,7 @@ class SceneNeeds:
         glossy: a lit surface has ks > 0: highlights are needed.
         depth: how many bounces to follow after the primary ray, and why.
         background: linear RGB of rays that hit nothing.
+        facts: what is known of each object's shape; the columns below are taken from it.
         planes: for each object the indices of the planes that have a face, ascending; for a sphere none, and all for a
             polyhedron that is neither a body nor a plate.
         plates: for each object the two planes between which it is a plate without thickness; for others none.
@@ -46,6 +43,7 @@ class SceneNeeds:
     glossy: bool
     depth: DepthLimit
     background: Color
+    facts: tuple[Facts, ...]
     planes: tuple[tuple[int, ...], ...]
     plates: tuple[tuple[int, ...], ...]
     boxes: tuple[tuple[Vector, Vector], ...]
@@ -70,7 +68,7 @@ def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
     reflects = any(follows(f.kr, largest, settings.cutoff) for f in used)
     refracts = any(follows(f.kt, largest, settings.cutoff) for f in used)
     branches = any(follows(min(f.kr, f.kt), largest, settings.cutoff) for f in used)
-    facts = _polyhedron_facts(scene)
+    facts = scene_facts(scene)
     depth = depth_limit(used, settings)
     bounces = depth.bounces > 0
     return SceneNeeds(
@@ -84,34 +82,12 @@ def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
         glossy=bool(scene.lights) and any(f.ks > 0 for f in used),
         depth=depth,
         background=scene.ambient if settings.background is None else settings.background,
-        planes=tuple(_planes(o.shape, f) for o, f in zip(scene.objects, facts, strict=True)),
-        plates=tuple(f.plate if f else () for f in facts),
-        boxes=tuple((f.low, f.high) if f else _box(o.shape) for o, f in zip(scene.objects, facts, strict=True)),
-        bounded=tuple(f is None or (f.drawn and f.bounded) for f in facts),
+        facts=facts,
+        planes=tuple(f.planes for f in facts),
+        plates=tuple(f.plate for f in facts),
+        boxes=tuple((f.low, f.high) for f in facts),
+        bounded=tuple(f.bounded for f in facts),
     )
-
-
-def _planes(shape: Shape, facts: "PolyhedronFacts | None") -> tuple[int, ...]:
-    if facts is None:
-        return ()
-    assert isinstance(shape, Polyhedron)
-    # Of what has neither a volume nor a face nothing is known; no scene file may hold it, but a program's scene may.
-    return facts.kept if facts.drawn else tuple(range(len(shape.planes)))
-
-
-def _box(sphere: Shape) -> tuple[Vector, Vector]:
-    assert isinstance(sphere, Sphere)
-    (x, y, z), r = sphere.center, sphere.radius
-    return (x - r, y - r, z - r), (x + r, y + r, z + r)
-
-
-def _polyhedron_facts(scene: Scene) -> "Sequence[PolyhedronFacts | None]":
-    """Facts about each object that is a polyhedron."""
-    if not any(isinstance(o.shape, Polyhedron) for o in scene.objects):
-        return [None] * len(scene.objects)
-    from converter.scene.geometry import scene_facts
-
-    return scene_facts(scene)
 
 
 def eta(finish: Finish, reading: IorReading) -> float:

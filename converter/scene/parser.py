@@ -16,10 +16,12 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from converter.scene import entries
-from converter.scene.entries import Lost, Reader
 from converter.scene.errors import Problem, SceneError, place
+from converter.scene.fields import Lost
+from converter.scene.geometry import check_geometry
 from converter.scene.lines import has_lines, read_camera_by_lines, read_section_by_lines
-from converter.scene.model import Camera, Polyhedron, Scene, Texmap
+from converter.scene.model import Camera, Scene, Texmap
+from converter.scene.reader import Reader
 from converter.scene.sections import SECTIONS, Section, is_alone, pass_over_surplus, read_by_count
 from converter.scene.tokens import COMMENT_HINT, SEPARATOR_HINT, Words, decode, number, whole
 
@@ -59,10 +61,9 @@ def load_scene(path: str | Path) -> Scene:
     scene, reader = _read_text(Words(decode(data, file), file))
     scene = _find_textures(scene, reader)
     problems: list[Problem] = []
-    if scene and any(isinstance(o.shape, Polyhedron) for o in scene.objects):
-        from converter.scene.geometry import check_geometry
-
-        problems = check_geometry(scene)
+    if scene:
+        with _uncollected():
+            problems = check_geometry(scene)
     return _checked(scene, reader, problems)
 
 

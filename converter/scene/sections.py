@@ -3,11 +3,15 @@
 from collections.abc import Callable
 from typing import Any, NamedTuple
 
+from converter.pigments.table import PIGMENT_WORDS
 from converter.scene import entries
-from converter.scene.entries import FINISH, LIGHT, PIGMENTS, PLANE, Lost, Reader, announced, is_name
+from converter.scene.entries import FINISH, LIGHT
 from converter.scene.errors import place, shown
+from converter.scene.fields import Lost
 from converter.scene.model import Object, Polyhedron
+from converter.scene.reader import Reader, is_name
 from converter.scene.tokens import HUGE, hint, number, whole, why_no_number
+from converter.shapes.polyhedron import PLANE, announced
 
 Line = list[str]
 
@@ -43,8 +47,8 @@ def _is_numeric(line: Line) -> bool:
 
 
 def _pigment_goes_on(first: str, size: int, line: Line) -> bool:
-    kind = PIGMENTS.get(first)
-    unfinished = size < kind.before + len(kind.numbers.fields) if kind else len(line) != len(FINISH.fields)
+    kind = PIGMENT_WORDS.get(first)
+    unfinished = size < kind.WORDS + len(kind.NUMBERS.fields) if kind else len(line) != len(FINISH.fields)
     return unfinished and _is_numeric(line)
 
 

@@ -9,6 +9,8 @@ PixelSample = Literal["corner", "center"]
 Specular = Literal["phong", "blinn"]
 IorReading = Literal["auto", "ratio", "index"]
 
+MOST_THREADS = 1024
+
 
 @dataclass(frozen=True, slots=True)
 class Settings:

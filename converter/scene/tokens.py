@@ -246,6 +246,12 @@ def found(word: str, names: Iterable[str] = ()) -> str:
     return f"found {shown(word)}{hint(word) or did_you_mean(word, tuple(names))}"
 
 
+def either(names: Iterable[str]) -> str:
+    """E.g. `solid, checker or texmap`."""
+    *others, last = names
+    return f"{', '.join(others)} or {last}" if others else last
+
+
 def hint(word: str) -> str:
     """`: a comment starts with '#'` and the like, for a word written as elsewhere; else nothing."""
     if word.startswith(_COMMENTS) or word == "--":

@@ -7,8 +7,8 @@ from typing import Protocol
 
 import numpy as np
 
+from converter.analysis.regions.warnings import method_warnings
 from converter.compare.metrics import Difference, Pixels, compare_pixels
-from converter.regions.warnings import method_warnings
 from converter.renderers.methods import Method
 from converter.scene.geometry import check_geometry
 from converter.scene.model import Scene

@@ -66,6 +66,16 @@ SEEN: Mapping[str, tuple[str, str]] = {
     "light-on-ball": ("mitsuba-mesh", "neither light nor wall is left where numbers are too large for Embree"),
     "camera-on-floor": ("mitsuba-offset", "the floor hides what is below it: to Embree the eye is above"),
     "camera-on-ball": ("mitsuba-offset", "rounding decides for every ray whether it starts within the ball"),
+    "tie-tile": ("native-float", "tiles run together: coordinates have no digits left for them"),
+    "tie-texel": ("native-float", "texels are as wide as roundings make them"),
+    "tie-along": ("native-float", "the walls are gone, for coordinates have no digits left for them"),
+    "tie-in-plane": ("native-float", "the boxes are gone, for coordinates have no digits left for them"),
+    "tie-edge": ("native-float", "the box is gone, for coordinates have no digits left for it"),
+    "tie-bodies": ("native-float", "the edge between two bodies is jagged"),
+    "tie-shadow": ("native-float", "light falls in steps, and the shadow is gone"),
+    "tie-tangent": ("native-float", "the eye has been rounded into the ball"),
+    "tie-critical": ("native-float", "nothing is seen from within the glass"),
+    "tie-mirrored": ("native-float", "tiles are mixed up, since many rays meet their edges"),
 }
 """For each family a method that fails in it, and what is to be seen then."""
 

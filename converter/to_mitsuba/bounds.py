@@ -7,8 +7,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from converter.scene.geometry import scene_facts
-from converter.scene.model import Scene, Sphere, Vector
+from converter.scene.model import Scene, Vector
 from converter.scene.settings import Settings
+from converter.shapes.table import shape_kind
 
 Floats = NDArray[np.float64]
 
@@ -58,24 +59,15 @@ def scene_bounds(scene: Scene, settings: Settings | None = None) -> Box:
     eye = np.array(scene.camera.eye)
     size = max(math.dist(eye, p) for p in (scene.camera.look_at, *(light.position for light in scene.lights)))
     enclosing: list[tuple[Floats, Floats]] = []
-    heights: list[tuple[float, float]] = []  # of the eye above a polyhedron's planes, and how far that goes
-    for o, fact in zip(scene.objects, scene_facts(scene), strict=True):
-        if isinstance(o.shape, Sphere):
-            low, high = np.array(o.shape.center) - o.shape.radius, np.array(o.shape.center) + o.shape.radius
-            distance = math.dist(eye, o.shape.center)
-            size = max(size, distance + o.shape.radius)
-            encloses = distance < o.shape.radius
-        else:
-            assert fact is not None
-            low, high = np.array(fact.low), np.array(fact.high)
-            planes = np.reshape([o.shape.planes[k] for k in fact.kept], (-1, 4))
-            planes = planes / np.abs(planes[:, :3]).max(axis=1, keepdims=True)  # normals may have any length
-            distances = planes @ [*eye, 1] / np.linalg.norm(planes[:, :3], axis=1)
-            farthest = math.hypot(*np.maximum(eye - low, high - eye)) if fact.bounded else math.inf
-            heights.append((float(np.abs(distances).max(initial=0)), farthest))
-            encloses = fact.bounded and bool(np.all(distances < 0))
+    heights: list[tuple[float, float]] = []  # of the eye above an object's planes, and how far that goes
+    for o, facts in zip(scene.objects, scene_facts(scene), strict=True):
+        kind = shape_kind(o.shape)
+        horizon = kind.horizon(o.shape, facts, scene.camera.eye)
+        size = max(size, horizon.needed)
+        heights.append((horizon.height, horizon.farthest))
+        encloses = facts.bounded and kind.contains(o.shape, scene.camera.eye)
         if encloses and not _followed(scene.finishes[o.finish].kt, settings):
-            enclosing.append((low, high))
+            enclosing.append((np.array(facts.low), np.array(facts.high)))
 
     half = math.tan(math.radians(scene.camera.fovy) / 2)
     to_corner = half * math.hypot(1, settings.width / settings.height)

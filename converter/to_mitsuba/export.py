@@ -7,6 +7,8 @@ from tempfile import TemporaryDirectory
 from typing import Any
 from xml.etree import ElementTree
 
+from converter.errors import ExportError
+from converter.pigments.table import PIGMENT_KINDS
 from converter.scene.model import Scene
 from converter.scene.settings import Settings
 from converter.to_mitsuba.scene import scene_description
@@ -17,13 +19,11 @@ ELEMENTS = {
     "hdrfilm": "film",
     "box": "rfilter",
     "stratified": "sampler",
-    "solid": "texture",
-    "solid_checker": "texture",
-    "projected_bitmap": "texture",
     "phong": "bsdf",
     "attenuated_point": "emitter",
     "sphere": "shape",
     "ply": "shape",
+    **{kind.TEXTURE: "texture" for kind in PIGMENT_KINDS.values()},
 }
 """The kind of each plugin that descriptions name, as scene files mark it."""
 
@@ -44,10 +44,6 @@ differ in all pixels. An .exr holds the same numbers either way.
 
 MOST_SHAPES = 1000
 """Objects that become Mitsuba's shapes, at most: each is a plugin, and takes its time and memory when it is loaded."""
-
-
-class ExportError(Exception):
-    """A scene cannot be written to a folder; the message says why."""
 
 
 def export_scene(scene: Scene, settings: Settings, folder: Path) -> list[Path]:
@@ -124,7 +120,7 @@ def _with_files(name: str, element: dict[str, Any], folder: Path) -> tuple[dict[
     """An element with what only memory can hold in a file."""
     rest = {key: value for key, value in element.items() if key not in ("mesh", "data", "geometry")}
     if "mesh" in element:
-        from converter.to_mitsuba.polyhedra import write_ply
+        from converter.to_mitsuba.meshes import write_ply
 
         path = folder / "meshes" / f"{name}.ply"
         write_ply(element["mesh"], path)

@@ -32,7 +32,7 @@ def _resolve(element: dict[str, Any], loaded: dict[str, Any]) -> dict[str, Any]:
 def _load(mi: Any, name: str, element: dict[str, Any]) -> Any:
     if element["type"] == "mesh":
         return _mesh(mi, name, element["mesh"], element["bsdf"])
-    if element["type"] == "projected_bitmap":
+    if "data" in element:
         image = element["data"]
         texels = np.asarray(image.texels, dtype=np.float32).ravel()
         element = element | {"data": mi.TensorXf(texels, (image.height, image.width, 3))}

@@ -2,7 +2,8 @@
 
 from typing import Any
 
-from converter.scene.coplanar import with_planes_shared
+from converter.analysis.coplanar import with_planes_shared
+from converter.pigments.table import pigment_kind
 from converter.scene.model import Scene
 from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings
@@ -10,7 +11,6 @@ from converter.to_mitsuba.camera import sensor
 from converter.to_mitsuba.finishes import bsdf
 from converter.to_mitsuba.integrator import Intersections, RayPrecision, integrator
 from converter.to_mitsuba.lights import light
-from converter.to_mitsuba.pigments import texture
 from converter.to_mitsuba.surfaces import exact_surfaces, material_name, shapes
 
 
@@ -45,7 +45,7 @@ def scene_description(
         "embree_use_robust_intersections": True,
         "sensor": sensor(scene.camera, settings),
     }
-    description |= {f"pigment_{i}": texture(scene.pigments[i]) for i in needs.pigments}
+    description |= {f"pigment_{i}": pigment_kind(p).texture(p) for i in needs.pigments for p in (scene.pigments[i],)}
     for o in {(o.finish, o.pigment): o for o in scene.objects}.values():
         pigment = {"type": "ref", "id": f"pigment_{o.pigment}"}
         description[material_name(o)] = bsdf(scene.finishes[o.finish], needs.etas[o.finish], pigment, settings)

@@ -3,11 +3,11 @@
 import re
 from pathlib import Path
 
+from converter.errors import ExportError
 from converter.files import is_special, replacing
 from converter.scene.model import Scene
 from converter.scene.settings import Settings
-from converter.to_mitsuba.export import ExportError
-from converter.to_povray.pigments import MARK as IMAGE_MARK
+from converter.to_povray.image_maps import MARK as IMAGE_MARK
 from converter.to_povray.scene import MARK, PovrayScene, povray_scene
 
 

@@ -13,8 +13,10 @@ from itertools import combinations
 from operator import lt
 from typing import TYPE_CHECKING, NamedTuple
 
-from converter.scene.model import Polyhedron, Scene, Shape, Sphere, Vector
+from converter.scene.model import Polyhedron, Scene, Shape, Sphere
 from converter.scene.needs import SceneNeeds
+from converter.shapes.polyhedron import signed_distances
+from converter.shapes.table import shape_kind
 
 if TYPE_CHECKING:
     from native_tracer.halfspaces import PolyhedronFacts
@@ -39,7 +41,7 @@ class Relation(Enum):
 def interiors(scene: Scene, needs: SceneNeeds) -> tuple[dict[int, Interior], list[tuple[int, int]]]:
     """The interior of each object that transmits, by its index, and pairs of such objects that overlap."""
     bodies = [i for i, o in enumerate(scene.objects) if scene.finishes[o.finish].kt > 0]
-    inverse = {i: _holds(scene.objects[i].shape, scene.camera.eye) for i in bodies}
+    inverse = {i: shape_kind(s).contains(s, scene.camera.eye) for i in bodies for s in (scene.objects[i].shape,)}
     around: dict[int, set[int]] = {i: set() for i in bodies}
     overlaps = []
     for i, j in combinations(bodies, 2):
@@ -82,7 +84,10 @@ def _outermost_first(around: dict[int, set[int]]) -> list[int]:
 
 
 def relation(scene: Scene, needs: SceneNeeds, i: int, j: int) -> Relation:
-    """How objects `i` and `j` lie to each other. A ball close to an edge of a polyhedron may count as overlapping."""
+    """How objects `i` and `j` lie to each other.
+
+    A ball close to an edge of a polyhedron may count as overlapping; kinds that nothing is known of do.
+    """
     if needs.bounded[i] and needs.bounded[j]:
         (low, high), (other_low, other_high) = needs.boxes[i], needs.boxes[j]
         if any(map(lt, high, other_low)) or any(map(lt, other_high, low)):
@@ -97,18 +102,13 @@ def relation(scene: Scene, needs: SceneNeeds, i: int, j: int) -> Relation:
     return Relation.OVERLAP
 
 
-def _holds(shape: Shape, point: Vector) -> bool:
-    if isinstance(shape, Sphere):
-        return math.dist(shape.center, point) < shape.radius
-    return max(_heights(shape, point)) < 0
-
-
 def _apart(first: Shape, second: Shape) -> bool:
+    """Whether two shapes are known to have nothing in common."""
     match first, second:
         case Sphere(), Sphere():
             return math.dist(first.center, second.center) >= first.radius + second.radius
         case Sphere(), Polyhedron():
-            return max(_heights(second, first.center)) >= first.radius
+            return max(signed_distances(second, first.center)) >= first.radius
         case Polyhedron(), Sphere():
             return _apart(second, first)
         case Polyhedron(), Polyhedron():
@@ -117,11 +117,12 @@ def _apart(first: Shape, second: Shape) -> bool:
 
 
 def _inside(inner: Shape, outer: Shape) -> bool:
+    """Whether a shape is known to lie in another, which it is not apart from."""
     match inner, outer:
         case Sphere(), Sphere():
             return math.dist(inner.center, outer.center) + inner.radius <= outer.radius
         case Sphere(), Polyhedron():
-            return max(_heights(outer, inner.center)) <= -inner.radius
+            return max(signed_distances(outer, inner.center)) <= -inner.radius
         case Polyhedron(), Sphere():
             from native_tracer.halfspaces import polyhedron_faces
 
@@ -139,9 +140,3 @@ def _common(first: Polyhedron, second: Polyhedron) -> "PolyhedronFacts":
     from native_tracer.halfspaces import polyhedron_facts
 
     return polyhedron_facts([first.planes + second.planes])[0]
-
-
-def _heights(polyhedron: Polyhedron, point: Vector) -> list[float]:
-    """Of a point above each plane."""
-    x, y, z = point
-    return [(a * x + b * y + c * z + d) / math.hypot(a, b, c) for a, b, c, d in polyhedron.planes]

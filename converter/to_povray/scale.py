@@ -5,9 +5,11 @@ from dataclasses import replace
 
 import numpy as np
 
-from converter.scene.model import Checker, Light, Object, Pigment, Polyhedron, Scene, Solid, Sphere, Texmap, Vector
+from converter.errors import ExportError
+from converter.pigments.table import pigment_kind
+from converter.scene.model import Light, Object, Scene, Vector
 from converter.scene.needs import SceneNeeds
-from converter.to_mitsuba.export import ExportError
+from converter.shapes.table import shape_kind
 
 NEAREST, FARTHEST = 1e-3, 1e7
 """Distances between which POV-Ray sees everything."""
@@ -33,31 +35,18 @@ def scaled(scene: Scene, factor: float) -> Scene:
         a, b, c = source.attenuation
         return replace(source, position=times(source.position), attenuation=(a, b / factor, c / factor**2))
 
-    def pigment(source: Pigment) -> Pigment:
-        match source:
-            case Solid():
-                return source
-            case Checker():
-                return replace(source, size=factor * source.size)
-            case Texmap(_, (a, b, c, d), (e, f, g, h)):
-                p0, p1 = (a / factor, b / factor, c / factor, d), (e / factor, f / factor, g / factor, h)
-                return replace(source, p0=p0, p1=p1)
-
     def object_(source: Object) -> Object:
-        match source.shape:
-            case Sphere(center, radius):
-                return replace(source, shape=Sphere(times(center), factor * radius))
-            case Polyhedron(planes):
-                moved = tuple((a, b, c, factor * d) for a, b, c, d in planes)
-                if not all(math.isfinite(d) for _, _, _, d in moved):
-                    raise ExportError("POV-Ray's numbers do not hold this scene: a plane would be too far away")
-                return replace(source, shape=Polyhedron(moved))
+        kind = shape_kind(source.shape)
+        shape = kind.scaled(source.shape, factor)
+        if not all(math.isfinite(d) for *_, d in kind.planes(shape)):
+            raise ExportError("POV-Ray's numbers do not hold this scene: a plane would be too far away")
+        return replace(source, shape=shape)
 
     return replace(
         scene,
         camera=replace(scene.camera, eye=times(scene.camera.eye), look_at=times(scene.camera.look_at)),
         lights=tuple(map(light, scene.lights)),
-        pigments=tuple(map(pigment, scene.pigments)),
+        pigments=tuple(pigment_kind(source).scaled(source, factor) for source in scene.pigments),
         objects=tuple(map(object_, scene.objects)),
     )
 

@@ -6,17 +6,18 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from converter.images.texture import read_texture
-from converter.scene.model import Object, Scene, Texmap
+from converter.pigments.table import pigment_kind
+from converter.scene.model import Object, Scene
 from converter.scene.needs import SceneNeeds, scene_needs
 from converter.scene.settings import Settings
+from converter.shapes.table import shape_kind
 from converter.to_povray.camera import camera
 from converter.to_povray.finishes import finish, transmission
+from converter.to_povray.image_maps import Image
 from converter.to_povray.interiors import interiors
 from converter.to_povray.lights import light
-from converter.to_povray.pigments import Image, pigment
 from converter.to_povray.scale import FARTHEST, NEAREST, has_horizon, reach, scaled, suitable_scale
-from converter.to_povray.surfaces import object_, surface
+from converter.to_povray.surfaces import object_
 from converter.to_povray.text import number, rgb
 
 MARK = "// Written by whitted convert"
@@ -54,9 +55,9 @@ def povray_scene(scene: Scene, settings: Settings, name: str = "scene") -> Povra
     scene = scaled(scene, factor)
     needs = scene_needs(scene, settings)
     images = {
-        i: Image(f"{name}_pigment_{i}.ppm", read_texture(source.file, source.place), source)
+        i: image
         for i in needs.pigments
-        if isinstance(source := scene.pigments[i], Texmap)
+        if (image := pigment_kind(scene.pigments[i]).povray_image(scene.pigments[i], f"{name}_pigment_{i}"))
     }
     omissions: list[str] = []
     if has_horizon(scene, needs):
@@ -143,8 +144,10 @@ def _textures(
     for i, j in sorted({(o.finish, o.pigment) for o in scene.objects}):
         users = [k for k, o in enumerate(scene.objects) if (o.finish, o.pigment) == (i, j)]
         boxes = [needs.boxes[k] for k in users] if all(needs.bounded[k] for k in users) else None
-        colors = pigment(scene.pigments[j], transmission(scene.finishes[i])[0], images.get(j), boxes)
-        text += f"#declare {_texture(i, j)} = texture {{\n  {colors}\n  {finish(scene.finishes[i], settings)}\n}}\n"
+        transmitted, _ = transmission(scene.finishes[i])
+        inner = pigment_kind(scene.pigments[j]).povray(scene.pigments[j], transmitted, images.get(j), boxes)
+        answer = finish(scene.finishes[i], settings)
+        text += f"#declare {_texture(i, j)} = texture {{\n  pigment {{ {inner} }}\n  {answer}\n}}\n"
     return text
 
 
@@ -162,7 +165,8 @@ def _objects(scene: Scene, needs: SceneNeeds, omissions: list[str]) -> str:
 
     def block(i: int, o: Object) -> str:
         texture = _texture(o.finish, o.pigment)
-        return object_(f"Object_{i}", surface(o.shape, needs, i), texture, inner.get(i), needs.lit)
+        shape = shape_kind(o.shape).povray(o.shape, needs.facts[i])
+        return object_(f"Object_{i}", shape, texture, inner.get(i), needs.lit)
 
     return "".join(block(i, o) for i, o in enumerate(scene.objects))
 

@@ -3,7 +3,7 @@
 import math
 from collections.abc import Iterable
 
-from converter.to_mitsuba.export import ExportError
+from converter.errors import ExportError
 
 
 def number(value: float) -> str:
@@ -26,3 +26,8 @@ def vector(values: Iterable[float]) -> str:
 def rgb(color: Iterable[float]) -> str:
     """Linear RGB, not clamped."""
     return f"rgb {vector(color)}"
+
+
+def transmitting(color: Iterable[float], transmitted: float) -> str:
+    """Linear RGB that lets a share of the light behind it through."""
+    return f"rgbt {vector((*color, transmitted))}" if transmitted else rgb(color)

@@ -11,7 +11,7 @@ from mitsuba_plugins.integrators.columns import column
 from mitsuba_plugins.integrators.contacts import LightContacts
 from mitsuba_plugins.integrators.geometry import Surface
 from mitsuba_plugins.integrators.rays import NOTHING, Hit, Ray, Real, largest, origin_error, shadow_spread, spawn
-from mitsuba_plugins.integrators.rounding import most_blur, surface_error
+from mitsuba_plugins.integrators.rounding import decides_ties, most_blur, surface_error
 
 
 class Records:
@@ -73,7 +73,8 @@ class ExactSurfaces:
     def closest(self, ray: Ray, active: Any) -> Hit:
         """The first surface that a ray meets, the point moved onto it to shed the error along the normal."""
         t, index, record, close = self.find_closest(ray, active)
-        if close is not None:
+        ties = close is not None and decides_ties(t)
+        if ties:
             t, index, record = self._settled(ray, t, index, record, active & close)
         valid = active & (index != NOTHING)
         surface = self.records.surface(index, record, valid)
@@ -81,8 +82,14 @@ class ExactSurfaces:
         within = (index == ray.object) | (dr.squared_norm(ray.o - center) < dr.square(radius))
         p, n = self.records.surface_point(surface, ray.o + t * ray.d, dr.select(within, ray.d, -ray.d))
         inside = dr.select(index == ray.object, ray.inside, dr.dot(n, ray.d) > 0)
-        lean = dr.select(sphere, quotient(origin_error(p, t), radius), 0)
-        return Hit(valid, t, index, record, p, n, inside, lean)
+        error = origin_error(p, t)
+        if ties:
+            # A ray that is off meets the surface farther off the more it slants.
+            off = _off(ray, *surface, largest(ray.o)) + t * ray.spread
+            along = quotient(off, dr.abs(dr.dot(n, ray.d)))
+            error += dr.minimum(along, most_blur(t) * (largest(p) + t))
+        lean = dr.select(sphere, quotient(error, radius), 0)
+        return Hit(valid, t, index, record, p, n, inside, error, lean)
 
     def spawn(self, hit: Hit, d: Any, inside: Any, spread: Any) -> Ray:
         """The ray that leaves `hit` in direction `d`, on the given side of the object."""
@@ -92,7 +99,9 @@ class ExactSurfaces:
         """Some object between `hit` and a light at `distance` in direction `d`, on the side it was seen from."""
         ray = spawn(hit, d, hit.inside, shadow_spread(hit, distance))
         found, close = self.find_blocker(ray, distance, light, active)
-        return found if close is None else self._settled_blocker(ray, distance, light, found, active & close)
+        if close is None or not decides_ties(distance):
+            return found
+        return self._settled_blocker(ray, distance, light, found, active & close)
 
     def error(self, ray: Ray, hit: Hit) -> Any:
         """How far a ray and the surface that it has met may be off from one another."""
@@ -126,7 +135,8 @@ class ExactSurfaces:
             tested = dr.zeros(mi.UInt32, width)
             while close & (tested < self.records.surface_count):
                 met, met_error, _ = self._meet(ray, tested, close)
-                met_error = dr.minimum(met_error, blur * (met + reach))
+                most = blur * (met + reach)
+                met_error = dr.select(met_error <= most, met_error, most)
                 error = dr.select((met < nearest) | ((met == nearest) & (met_error > error)), met_error, error)
                 nearest = dr.minimum(met, nearest)
                 tested += 1
@@ -136,7 +146,8 @@ class ExactSurfaces:
             tested = dr.zeros(mi.UInt32, width)
             while close & (tested < self.records.surface_count) & (index == NOTHING):
                 met, met_error, met_record = self._meet(ray, tested, close)
-                met_error = dr.minimum(met_error, blur * (met + reach))
+                most = blur * (met + reach)
+                met_error = dr.select(met_error <= most, met_error, most)
                 ties = (met < dr.inf) & (met - nearest <= error + met_error)
                 t = dr.select(ties, met, t)
                 index = dr.select(ties, tested, index)
@@ -287,6 +298,10 @@ def narrow(passage: Passage, ray: Ray, n: Any, offset: Any, record: Any) -> Pass
     entering, leaving = cosine < -ray.spread, cosine > ray.spread
     enters = entering & (t > passage.enter) & other
     leaves = leaving & (t < passage.leave) & other
+    if not decides_ties(t):
+        # Outside of a plane that it runs along, a ray has left at once.
+        outside = other & (cosine == 0) & (height > 0)
+        t, leaves = dr.select(outside, -dr.inf, t), leaves | outside
     between = dr.abs(t - dr.select(entering, passage.enter, passage.leave))
     return Passage(
         enter=dr.select(enters, t, passage.enter),

@@ -34,7 +34,8 @@ class MitsubaSurfaces:
         flags = mi.RayFlags.Minimal | mi.RayFlags.ShadingFrame
         si = found.compute_surface_interaction(probe, +flags, valid)
         n = mi.Vector3f(si.sh_frame.n)
-        return Hit(valid, si.t, dr.select(valid, index, NOTHING), record, si.p, n, dr.dot(n, ray.d) > 0, mi.Float(0))
+        index, inside = dr.select(valid, index, NOTHING), dr.dot(n, ray.d) > 0
+        return Hit(valid, si.t, index, record, si.p, n, inside, mi.Float(0), mi.Float(0))
 
     def spawn(self, hit: Hit, d: Any, inside: Any, spread: Any) -> Ray:
         """The ray that leaves `hit` in direction `d`."""

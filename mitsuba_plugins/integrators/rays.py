@@ -66,6 +66,7 @@ class Hit:
     p: Any  # Point3
     n: Any  # Vector3, outward
     inside: Any  # Bool, whether the ray came from inside the object
+    error: Any  # Float, how far p may be off
     lean: Any  # Float, how far n may be off
 
 
@@ -103,7 +104,7 @@ def lanes(width: int) -> Any:
 
 def spawn(hit: Hit, d: Any, inside: Any, spread: Any) -> Ray:
     """The ray that leaves `hit` in direction `d`, which may be off by `spread`, on the given side of the object."""
-    return Ray(hit.p, d, hit.object, hit.record, inside, origin_error(hit.p, hit.t), spread)
+    return Ray(hit.p, d, hit.object, hit.record, inside, hit.error, spread)
 
 
 def origin_error(p: Any, t: Any) -> Any:
@@ -129,7 +130,7 @@ def reflect(d: Any, n: Any) -> Any:
 
 def shadow_spread(hit: Hit, distance: Any) -> Any:
     """How far the direction to a light may be off: it leads there from wherever the point really is."""
-    turn = quotient(origin_error(hit.p, hit.t), distance)
+    turn = quotient(hit.error, distance)
     return dr.minimum(least_spread(distance) + turn, most_blur(distance))
 
 

@@ -35,6 +35,7 @@ from mitsuba_plugins.integrators.rays import (
 from mitsuba_plugins.integrators.rounding import (
     camera_errors,
     coordinate_errors,
+    decides_ties,
     epsilon,
     least_spread,
     most_blur,
@@ -207,7 +208,8 @@ class Whitted(mi.SamplingIntegrator):
 
     def _errors(self, ray: Ray, hit: Hit):
         """How far the coordinates of a hit may be off, where a pigment asks."""
-        if not self._materials.has_edges or self.intersections in ("offset", "ulp"):
+        decides = decides_ties(hit.t) and self.intersections not in ("offset", "ulp")
+        if not decides or not self._materials.has_edges:
             return self.types.Vector3(0)
         return coordinate_errors(hit.p, hit.n, ray.d, hit.t, self._tracer.error(ray, hit))
 
@@ -220,7 +222,7 @@ class Whitted(mi.SamplingIntegrator):
         n = dr.select(hit.inside, -hit.n, hit.n)
         cosine = dr.dot(n, to_light)
         # A surface is not lit along itself, nor by a light at the very point.
-        apart = distance > 8 * epsilon(distance) * (largest(hit.p) + hit.t)
+        apart = distance > 8 * epsilon(distance) * largest(hit.p)
         facing = (
             active & (cosine > least_spread(cosine)) & apart & ~self._light_contacts.grazes(index, hit.record, active)
         )
@@ -272,13 +274,11 @@ class Whitted(mi.SamplingIntegrator):
         while active:
             hit = self.closest(ray, active)
             finish, color = self.material(ray, hit)
-            local = self._local_radiance(ray, hit, finish, color)
+            local = self.local_radiance(ray, hit, finish, color)
             radiance += weight * dr.select(hit.valid, local, self.types.Color3(self.background))
 
             depth += 1
-            follows = hit.valid & (depth <= self.max_depth)
-            mirror_weight, mirrors = self._successor_weight(self.reflection, weight * finish.kr, follows)
-            through_weight, refracts = self._successor_weight(self.refraction, weight * finish.kt, follows)
+            mirror_weight, mirrors, through_weight, refracts = self.followed(weight, depth, hit, finish)
             if dr.hint(self.depth_limited, mode="scalar"):
                 heavier = weight * dr.maximum(finish.kr, finish.kt)
                 too_deep |= hit.valid & (depth > self.max_depth) & (heavier > 0) & (heavier >= self.cutoff)
@@ -312,6 +312,16 @@ class Whitted(mi.SamplingIntegrator):
                 ray = self.transmitted(ray, hit, finish.eta)[0]
         return radiance, too_deep
 
+    def followed(self, weight, depth, hit: Hit, finish: Finish):
+        """Weight of the mirrored ray of a hit, and where it is followed; the same of the refracted one.
+
+        `weight` is that of the ray that has hit, and `depth` how many bounces lie before those that follow.
+        """
+        follows = hit.valid & (depth <= self.max_depth)
+        mirror_weight, mirrors = self._successor_weight(self.reflection, weight * finish.kr, follows)
+        through_weight, refracts = self._successor_weight(self.refraction, weight * finish.kt, follows)
+        return mirror_weight, mirrors, through_weight, refracts
+
     def _successor_weight(self, enabled, weight, active):
         """Weight of a mirrored or refracted ray, and where it is followed."""
         if not enabled:
@@ -319,7 +329,8 @@ class Whitted(mi.SamplingIntegrator):
         return weight, active & (weight > 0) & (weight >= self.cutoff)
 
     @dr.syntax
-    def _local_radiance(self, ray: Ray, hit: Hit, finish: Finish, color):
+    def local_radiance(self, ray: Ray, hit: Hit, finish: Finish, color):
+        """What a surface sends back along a ray by itself (Color3): ambient light, and what the lights add."""
         radiance = finish.ka * self.types.Color3(self.ambient) * color
         if dr.hint(self.shadows, mode="scalar"):
             lit = hit.valid & (finish.kd + finish.ks > 0)

@@ -8,12 +8,26 @@ point: after all that is decided.
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
+from typing import assert_never
 
 import numpy as np
 from numpy.typing import NDArray
 
 from converter.images.texture import read_texture
-from converter.scene.model import Camera, Checker, Color, Finish, Pigment, Scene, Shape, Solid, Sphere, Texmap, Vector
+from converter.scene.model import (
+    Camera,
+    Checker,
+    Color,
+    Finish,
+    Pigment,
+    Polyhedron,
+    Scene,
+    Shape,
+    Solid,
+    Sphere,
+    Texmap,
+    Vector,
+)
 from converter.scene.needs import is_index, scene_needs
 from converter.scene.settings import Settings
 from converter.studies.exact.arithmetic import Arithmetic, Decimals, Number
@@ -304,17 +318,24 @@ class ExactTracer:
     # ---- Pigments
 
     def _pigment(self, pigment: Pigment) -> Callable[[Vec], Color]:
+        match pigment:
+            case Solid(color):
+                return lambda _: color
+            case Checker(first, second, size):
+                return self._tiles(first, second, self._numbers.number(size))
+            case Texmap():
+                return self._texels(pigment)
+        assert_never(pigment)
+
+    def _tiles(self, first: Color, second: Color, size: Number) -> Callable[[Vec], Color]:
+        def tile(point: Vec) -> Color:
+            odd = sum(self._cell(x / size, "tile", toward_zero=False) for x in point) % 2
+            return second if odd else first
+
+        return tile
+
+    def _texels(self, pigment: Texmap) -> Callable[[Vec], Color]:
         number = self._numbers.number
-        if isinstance(pigment, Solid):
-            return lambda _: pigment.color
-        if isinstance(pigment, Checker):
-            size = number(pigment.size)
-
-            def tile(point: Vec) -> Color:
-                odd = sum(self._cell(x / size, "tile", toward_zero=False) for x in point) % 2
-                return pigment.second if odd else pigment.first
-
-            return tile
         texels, p0, p1 = self._texture(pigment), *([number(x) for x in p] for p in (pigment.p0, pigment.p1))
         height, width = texels.shape[:2]
 
@@ -353,9 +374,12 @@ class ExactTracer:
 
     def _shape(self, shape: Shape) -> "_Ball | list[_Plane]":
         number = self._numbers.number
-        if isinstance(shape, Sphere):
-            return _Ball(self._vector(shape.center), number(shape.radius))
-        return [_Plane(self._vector((a, b, c)), number(d)) for a, b, c, d in shape.planes]
+        match shape:
+            case Sphere(center, radius):
+                return _Ball(self._vector(center), number(radius))
+            case Polyhedron(planes):
+                return [_Plane(self._vector((a, b, c)), number(d)) for a, b, c, d in planes]
+        assert_never(shape)
 
 
 @dataclass(frozen=True, slots=True)

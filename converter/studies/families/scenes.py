@@ -3,9 +3,9 @@
 from collections.abc import Sequence
 from dataclasses import replace
 
+from converter.pigments.table import pigment_kind
 from converter.scene.model import (
     Camera,
-    Checker,
     Color,
     Finish,
     Light,
@@ -17,10 +17,10 @@ from converter.scene.model import (
     Shape,
     Solid,
     Sphere,
-    Texmap,
     Vector,
 )
 from converter.scene.settings import Settings
+from converter.shapes.table import shape_kind
 
 Body = tuple[Shape, Pigment | Color, Finish]
 """A shape with its pigment, or a plain colour, and its finish."""
@@ -93,19 +93,6 @@ def scaled(whole: Scene, factor: float) -> Scene:
     def vector(v: Vector) -> Vector:
         return (factor * v[0], factor * v[1], factor * v[2])
 
-    def shape(s: Shape) -> Shape:
-        if isinstance(s, Sphere):
-            return Sphere(vector(s.center), factor * s.radius)
-        return Polyhedron(tuple((a, b, c, factor * d) for a, b, c, d in s.planes))
-
-    def pigment(p: Pigment) -> Pigment:
-        if isinstance(p, Checker):
-            return replace(p, size=factor * p.size)
-        if isinstance(p, Texmap):
-            p0, p1 = ((a / factor, b / factor, c / factor, d) for a, b, c, d in (p.p0, p.p1))
-            return replace(p, p0=p0, p1=p1)
-        return p
-
     def dimmed(source: Light) -> Light:
         a, b, c = source.attenuation
         return replace(source, position=vector(source.position), attenuation=(a, b / factor, c / factor**2))
@@ -115,8 +102,8 @@ def scaled(whole: Scene, factor: float) -> Scene:
         whole,
         camera=replace(view, eye=vector(view.eye), look_at=vector(view.look_at)),
         lights=tuple(map(dimmed, whole.lights)),
-        pigments=tuple(map(pigment, whole.pigments)),
-        objects=tuple(replace(o, shape=shape(o.shape)) for o in whole.objects),
+        pigments=tuple(pigment_kind(p).scaled(p, factor) for p in whole.pigments),
+        objects=tuple(replace(o, shape=shape_kind(o.shape).scaled(o.shape, factor)) for o in whole.objects),
     )
 
 

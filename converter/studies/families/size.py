@@ -2,6 +2,7 @@
 
 from dataclasses import replace
 from functools import cache
+from typing import assert_never
 
 import numpy as np
 
@@ -81,9 +82,12 @@ def moved(whole: Scene, way: Vector) -> Scene:
         return (a, b, c, d - (a * way[0] + b * way[1] + c * way[2]))
 
     def shape(s: Shape) -> Shape:
-        if isinstance(s, Sphere):
-            return Sphere(vector(s.center), s.radius)
-        return Polyhedron(tuple(map(plane, s.planes)))
+        match s:
+            case Sphere(center, radius):
+                return Sphere(vector(center), radius)
+            case Polyhedron(planes):
+                return Polyhedron(tuple(map(plane, planes)))
+        assert_never(s)
 
     view = whole.camera
     return replace(

@@ -8,8 +8,21 @@ from collections.abc import Callable
 from dataclasses import replace
 from fractions import Fraction
 from functools import cache
+from typing import assert_never
 
-from converter.scene.model import Camera, Checker, Pigment, Polyhedron, Scene, Shape, Sphere, Texmap, Vector
+from converter.scene.model import (
+    Camera,
+    Checker,
+    Pigment,
+    Plane,
+    Polyhedron,
+    Scene,
+    Shape,
+    Solid,
+    Sphere,
+    Texmap,
+    Vector,
+)
 from converter.scene.settings import Settings
 from converter.studies.exact.tracer import exact_picture
 from converter.studies.families.coincidence import BLUE, RED, texture_file
@@ -144,23 +157,28 @@ def _moved(whole: Scene, times: float) -> Scene:
         x, y, z = (number(Fraction(c) + d) for c, d in zip(v, shift, strict=True))
         return (x, y, z)
 
+    def plane(p: Plane) -> Plane:
+        a, b, c, d = p
+        return (a, b, c, number(Fraction(d) - sum(Fraction(n) * m for n, m in zip((a, b, c), shift, strict=True))))
+
     def shape(s: Shape) -> Shape:
-        if isinstance(s, Sphere):
-            return Sphere(vector(s.center), number(s.radius))
-        return Polyhedron(
-            tuple(
-                (a, b, c, number(Fraction(d) - sum(Fraction(n) * m for n, m in zip((a, b, c), shift, strict=True))))
-                for a, b, c, d in s.planes
-            )
-        )
+        match s:
+            case Sphere(center, radius):
+                return Sphere(vector(center), number(radius))
+            case Polyhedron(planes):
+                return Polyhedron(tuple(map(plane, planes)))
+        assert_never(s)
 
     def pigment(p: Pigment) -> Pigment:
-        if isinstance(p, Checker):
-            return replace(p, size=number(p.size))
-        if isinstance(p, Texmap):
-            p0, p1 = ((*(float(Fraction(x) / _UNIT) for x in p[:3]), p[3]) for p in (p.p0, p.p1))
-            return replace(p, p0=(p0[0], p0[1], p0[2], p0[3]), p1=(p1[0], p1[1], p1[2], p1[3]))
-        return p
+        match p:
+            case Checker():
+                return replace(p, size=number(p.size))
+            case Texmap():
+                p0, p1 = ((*(float(Fraction(x) / _UNIT) for x in p[:3]), p[3]) for p in (p.p0, p.p1))
+                return replace(p, p0=(p0[0], p0[1], p0[2], p0[3]), p1=(p1[0], p1[1], p1[2], p1[3]))
+            case Solid():
+                return p
+        assert_never(p)
 
     view = whole.camera
     return replace(

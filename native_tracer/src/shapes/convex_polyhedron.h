@@ -214,7 +214,10 @@ class ConvexPolyhedron {
         int number = first_primitive_;
         for (const Plane<Real>& plane : planes_) {
             const Vector<L> normal(plane.normal);
-            const L slope = dot(normal, rays.direction);
+            L slope = dot(normal, rays.direction);
+            if constexpr (!decides_ties<Real>) {
+                slope = slope + zero;  // never -0: a ray along the plane leaves it at -infinity if it runs outside
+            }
             const L height = dot(normal, rays.origin) + L(plane.offset);
             const L t = -height / slope;
             const Indices<Real> primitive = number++;

@@ -58,7 +58,7 @@ class Camera {
 
     // How far the eye and directions may be off, see rounding.h.
     Real eye_error() const { return eye_error_; }
-    Real spread() const { return std::min(spread_, most_blur<Real>); }
+    Real spread() const { return std::min(spread_, most_camera_blur<Real>); }
 
     // Unit directions through points of the picture, in pixels from its top-left corner. On the plane at distance 1 the
     // window is 2 tan(fovy/2) high, and as wide as square pixels make it.

@@ -31,12 +31,6 @@ Lanes<Real> rounding_error(Lanes<Real> reach, Lanes<Real> t) {
     return Lanes<Real>(32 * input_epsilon<Real>) * (reach + t);
 }
 
-// No coordinate is larger that has such a rounding error.
-template <typename Real>
-Lanes<Real> reach_of(Lanes<Real> rounding_error) {
-    return Lanes<Real>(1 / (32 * input_epsilon<Real>)) * rounding_error;
-}
-
 // Rays that are traced together, one to a lane. Nobody looks at the lanes that are not active.
 template <typename Real>
 struct Group {
@@ -94,7 +88,7 @@ class RayStack {
             load(from, field);
             from += capacity_;
         });
-        group.rays.reach = reach_of(group.rays.t_min);
+        group.rays.reach = max_norm(group.rays.origin);
         group.active = Mask<Real>::first(static_cast<int>(std::min<std::size_t>(size_ - first, lane_count<Real>)));
         return group;
     }

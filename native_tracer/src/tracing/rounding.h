@@ -34,13 +34,21 @@ inline constexpr Real input_epsilon = static_cast<Real>(
 template <typename Real>
 inline constexpr Real tie_epsilon = sizeof(Real) > sizeof(float) ? input_epsilon<Real> : Real(0);
 
+template <typename Real>
+inline constexpr bool decides_ties = tie_epsilon<Real> > 0;
+
 // Of a unit vector's component and of its products with others, some eight roundings.
 template <typename Real>
 inline constexpr Real least_spread = 4 * tie_epsilon<Real>;
 
-// The square root of epsilon.
+// Relative to distances and coordinates. The bounds of a ray grow by more than its errors do, up to twentyfold a bounce
+// where those only double: beyond this they would make ties of what is none.
 template <typename Real>
-inline constexpr Real most_blur = tie_epsilon<Real> > 0 ? Real(0x1p-26) : Real(0);
+inline constexpr Real most_blur = tie_epsilon<Real> > 0 ? Real(0x1p-32) : Real(0);
+
+// Of directions from an eye far from the origin, whose bounds have not grown: the square root of epsilon.
+template <typename Real>
+inline constexpr Real most_camera_blur = tie_epsilon<Real> > 0 ? Real(0x1p-26) : Real(0);
 
 // Of a number in a file: a whole one is meant as it stands, any other is a decimal that was rounded.
 template <typename Real>

@@ -138,7 +138,7 @@ struct Scene {
         const Lanes<Real> range = Lanes<Real>(most_blur<Real>) * (hits.t + rays.reach);
         close |= (second - hits.t <= range) | (hits.t < range);
         close &= wanted;
-        if (any(close)) [[unlikely]] {
+        if (decides_ties<Real> && any(close)) [[unlikely]] {
             const Hits<Real> settled = nearest_hit_by_rules(rays, close);
             hits.t = select(close, settled.t, hits.t);
             hits.object = select(close, settled.object, hits.object);
@@ -154,7 +154,7 @@ struct Scene {
         Mask<Real> close = Mask<Real>::none();
         Indices<Real> blocker = find_blocker<Ties::found_in_the_way>(rays, light, distance, wanted, close, &light.view);
         close &= wanted;
-        if (any(close)) [[unlikely]] {
+        if (decides_ties<Real> && any(close)) [[unlikely]] {
             blocker = select(close, blocker_by_rules(rays, light, distance, close), blocker);
         }
         return blocker;
@@ -245,9 +245,13 @@ struct Scene {
     static Lanes<Real> distance_errors(const Shape& shape, const Rays<Real>& rays, const Crossing<Real>& crossing) {
         return Lanes<Real>::gather([&](int lane) {
             const Real t = crossing.t[lane];
-            return std::isfinite(t) ? std::min(distance_error(shape, rays, lane, crossing.primitive[lane], t),
-                                               most_blur<Real> * (t + rays.reach[lane]))
-                                    : Real(0);
+            if (!std::isfinite(t)) {
+                return Real(0);
+            }
+            // No number where the point is rounded to a sphere's centre.
+            const Real error = distance_error(shape, rays, lane, crossing.primitive[lane], t);
+            const Real most = most_blur<Real> * (t + rays.reach[lane]);
+            return error <= most ? error : most;
         });
     }
 

@@ -165,11 +165,12 @@ Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const H
         surface.outward = moved.outward;
         surface.normal = select(hits.inside, -surface.outward, surface.outward);
         const L reach = max_norm(surface.point);
-        surface.error = rounding_error(reach, hits.t);
-        surface.lean = L(moved.curvature) * surface.error;
-
-        const L off = rays.t_min + moved.error + hits.t * rays.spread;
+        const L off = decides_ties<Real> ? rays.t_min + moved.error + hits.t * rays.spread : L(Real(0));
         const L blur = L(most_blur<Real>) * (reach + hits.t);
+        // A ray that is off meets the surface farther off the more it slants.
+        const L along = min(off / abs(dot(surface.outward, rays.direction)), blur);
+        surface.error = rounding_error(reach, hits.t) + along;
+        surface.lean = L(moved.curvature) * surface.error;
         surface.pigment = color_at(*object.pigment, {surface.point, surface.outward, rays.direction, off, blur});
         const Finish<Real>& finish = object.finish;
         surface.ka = finish.ka;
@@ -201,9 +202,10 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
         return color;
     }
     // Shadow rays start on the viewer's side of the surface, as the reflected ray does.
+    const L reach = max_norm(surface.point);
     Rays<Real> shadow_rays{surface.point,  surface.normal, surface.error,         hits.object,
-                           hits.primitive, hits.inside,    L(least_spread<Real>), reach_of(surface.error)};
-    const L point_error = L(tie_epsilon<Real> / (4 * input_epsilon<Real>)) * surface.error;
+                           hits.primitive, hits.inside,    L(least_spread<Real>), reach};
+    const L point_error = L(8 * tie_epsilon<Real>) * reach;
     for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
         const Light<Real>& light = scene_.lights[i];
         const Vector<L> path = Vector<L>(light.position) - surface.point;

@@ -38,10 +38,15 @@ class BoxTest {
     // take part; planes that meet at sharp angles multiply them by up to `growth`. An origin may itself lie outside the
     // object that it is on, by less than t_min.
     BoxTest(const Rays<Real>& rays, Real growth, Real reach) {
-        // Boxes are wider still, for what ties with a hit has to be come to.
-        const L error =
-            L(std::max(32 * std::numeric_limits<Real>::epsilon(), 4096 * tie_epsilon<Real>)) * (rays.reach + L(reach));
-        const L margin = L(growth) * (error + rays.t_min);
+        // Boxes are wider still, for what ties with a hit has to be come to, from wherever the ray may lead; nothing in
+        // the tree is as far away as twice the sum of both reaches.
+        const L both = rays.reach + L(reach);
+        const L error = L(std::max(32 * std::numeric_limits<Real>::epsilon(), 4096 * tie_epsilon<Real>)) * both;
+        L off = error + rays.t_min;
+        if constexpr (decides_ties<Real>) {
+            off = off + L(Real(4)) * both * rays.spread;
+        }
+        const L margin = L(growth) * off;
         const Vector<L> margins{margin, margin, margin};
         before_ = rays.origin + margins;
         behind_ = rays.origin - margins;

@@ -1,0 +1,79 @@
+"""How fine the meshes of a scene are, and where those of what has no bounds end."""
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+from numpy.typing import NDArray
+
+from converter.scene.model import Scene, Sphere
+from converter.scene.settings import Settings
+from converter.shapes.table import shape_kind
+from converter.to_mitsuba.bounds import Box, scene_bounds
+
+MOST_TRIANGLES = 1 << 24
+"""Of all spheres together, where they are meshes."""
+
+
+@dataclass(frozen=True, eq=False)
+class SphereMesh:
+    """A sphere as triangles: vertices and their normals (n, 3) float64, and triangles (m, 3)."""
+
+    vertices: NDArray[np.float64]
+    normals: NDArray[np.float64]
+    triangles: NDArray[np.int64]
+
+    def placed(self, sphere: Sphere) -> "SphereMesh":
+        """Move and scale this unit sphere."""
+        return SphereMesh(sphere.center + sphere.radius * self.normals, self.normals, self.triangles)
+
+
+def unit_ball(tolerance: float, count: int = 1) -> SphereMesh:
+    """A unit sphere around the origin: an icosahedron, divided until no triangle is off by more than `tolerance`.
+
+    Raises:
+        ValueError: `count` of them would have more than `MOST_TRIANGLES`.
+
+    """
+    from trimesh.creation import icosphere
+
+    # Each division halves the triangles' size, and quarters what they are off by.
+    divisions = 0
+    while 20 * 4**divisions * count <= MOST_TRIANGLES:
+        mesh = icosphere(subdivisions=divisions)
+        if 1 - np.abs(np.sum(mesh.face_normals * mesh.triangles[:, 0], axis=1)).min() <= tolerance:
+            return SphereMesh(mesh.vertices, mesh.vertices, mesh.faces)
+        divisions += 1
+    raise ValueError(f"{count} spheres off by {tolerance:g} of their radius at most would have too many triangles")
+
+
+@dataclass(frozen=True)
+class Meshing:
+    """What the shapes of a scene are made meshes by.
+
+    Attributes:
+        scene, settings: what is drawn, and how.
+        tolerance: what spheres that are meshes may be off by, as a share of their radius; None: they are no meshes.
+
+    """
+
+    scene: Scene
+    settings: Settings
+    tolerance: float | None = None
+
+    @cached_property
+    def bounds(self) -> Box:
+        """Where meshes of what has no bounds end."""
+        return scene_bounds(self.scene, self.settings)
+
+    @cached_property
+    def unit_ball(self) -> SphereMesh | None:
+        """What balls are made of, if they are meshes.
+
+        Raises:
+            ValueError: the tolerance asks for more than `MOST_TRIANGLES`.
+
+        """
+        if self.tolerance is None:
+            return None
+        return unit_ball(self.tolerance, sum(shape_kind(o.shape).ball(o.shape) is not None for o in self.scene.objects))
