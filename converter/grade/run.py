@@ -1,13 +1,13 @@
 """One command, run within limits and walls by a warden."""
 
 import json
-import os
 import signal
 import subprocess
 import sys
 from collections.abc import Sequence
 from dataclasses import asdict, dataclass, replace
 from pathlib import Path
+from threading import Lock
 
 from converter.grade import warden
 from converter.grade.sandbox import Walls
@@ -41,6 +41,7 @@ class Limits:
 
 
 CLOCK = 2.0
+_PATH = "/usr/local/bin:/usr/bin:/bin"
 _FILES = 10_000
 _BUILD = Limits(seconds=120.0, memory=2048, output=512, tasks=256)
 
@@ -55,44 +56,80 @@ def build_limits(limits: Limits) -> Limits:
     )
 
 
-def run(
-    command: Sequence[str], folder: Path, seen: Sequence[Path], limits: Limits, walls: Walls, cores: Sequence[int]
-) -> Ending:
-    """Run a command in `folder`, where alone it may write, on the processors `cores`.
+class Stopped(Exception):  # noqa: N818 - what it says
+    """All is to end: the command was ended before its time."""
 
-    Its environment is bare and the same for all. An interruption of this process ends the command.
+
+class Runner:
+    """Runs commands within limits and walls, from any thread.
+
+    Attributes:
+        walls: that stand about each.
+
     """
-    order = Order(
-        command=walls.around(command, folder, seen),
-        folder=str(folder),
-        environment={
-            "PATH": os.defpath if walls.bubblewrap else os.environ.get("PATH", os.defpath),
-            "HOME": str(folder),
-            "LANG": "C.UTF-8",
-            "OMP_NUM_THREADS": str(len(cores)),
-        },
-        cores=list(cores),
-        seconds=limits.seconds,
-        clock_seconds=limits.clock_seconds,
-        memory=limits.memory * MIB,
-        tasks=limits.tasks,
-        files=_FILES,
-        output=limits.output * MIB,
-    )
-    process = subprocess.Popen(
-        [sys.executable, "-I", "-S", warden.__file__, json.dumps(asdict(order))],
-        stdin=subprocess.PIPE,  # never written to: it closes with this process, whatever ends it
-        stdout=subprocess.PIPE,
-        start_new_session=True,
-    )
-    assert process.stdin is not None and process.stdout is not None
-    with process.stdin, process.stdout:
-        said = process.stdout.read()
-    process.wait()
-    try:
-        return Ending(**json.loads(said))
-    except (ValueError, TypeError):
-        return Ending(trouble="its warden was ended, most likely by the program")
+
+    def __init__(self, walls: Walls) -> None:
+        self.walls = walls
+        self._lock = Lock()
+        self._running: set[subprocess.Popen[bytes]] = set()
+        self._stopped = False
+
+    def run(
+        self, command: Sequence[str], folder: Path, seen: Sequence[Path], limits: Limits, cores: Sequence[int]
+    ) -> Ending:
+        """Run a command in `folder`, where alone it may write, on the processors `cores`.
+
+        Its environment is bare and the same for all. It does not outlive this process.
+
+        Raises:
+            Stopped: `stop` has ended it.
+
+        """
+        environment = {"PATH": _PATH, "HOME": str(folder), "LANG": "C.UTF-8", "OMP_NUM_THREADS": str(len(cores))}
+        order = Order(
+            command=self.walls.around(command, folder, seen),
+            folder=str(folder),
+            environment=environment,
+            cores=list(cores),
+            seconds=limits.seconds,
+            clock_seconds=limits.clock_seconds,
+            memory=limits.memory * MIB,
+            tasks=limits.tasks,
+            files=_FILES,
+            output=limits.output * MIB,
+        )
+        said = self._watched([sys.executable, "-I", "-S", warden.__file__, json.dumps(asdict(order))])
+        try:
+            return Ending(**json.loads(said))
+        except (ValueError, TypeError):
+            return Ending(trouble="its warden was ended, most likely by the program")
+
+    def stop(self) -> None:
+        """End all commands, and begin none any more."""
+        with self._lock:
+            self._stopped = True
+            for process in self._running:
+                if process.stdin is not None:
+                    process.stdin.close()
+
+    def _watched(self, command: Sequence[str]) -> bytes:
+        with self._lock:
+            if self._stopped:
+                raise Stopped
+            # Nothing is written to its standard input, which closes with this process, whatever ends it.
+            pipe = subprocess.PIPE
+            process = subprocess.Popen(command, stdin=pipe, stdout=pipe, start_new_session=True)
+            self._running.add(process)
+        assert process.stdin is not None and process.stdout is not None
+        with process.stdout:
+            said = process.stdout.read()
+        process.wait()
+        with self._lock:
+            self._running.remove(process)
+            process.stdin.close()
+            if self._stopped:
+                raise Stopped
+        return said
 
 
 def told(ending: Ending, limits: Limits) -> str:
