@@ -61,7 +61,9 @@ def parser() -> Parser:
         "--tasks", type=_count, default=128, metavar="N", help="processes and threads at once (%(default)s)"
     )
     group.add_argument("--cores", type=_count, default=1, metavar="N", help="cores for each program (%(default)s)")
-    group.add_argument("--jobs", type=_count, metavar="N", help="programs side by side (as many as have their own cores)")
+    group.add_argument(
+        "--jobs", type=_count, metavar="N", help="programs side by side (as many as have their own cores)"
+    )
     group.add_argument(
         "--walls",
         choices=("auto", "bubblewrap", "none"),
@@ -128,7 +130,8 @@ def run(arguments: argparse.Namespace) -> int:
     if not walls.bubblewrap:
         say(f"warning: {walls.told}", arguments.quiet)
 
-    order = Order(*arguments.size, arguments.picture, limits, jobs, arguments.make, arguments.anew)
+    width, height = arguments.size
+    order = Order(width, height, arguments.picture, limits, jobs, arguments.make, arguments.anew)
     with ProgressBar("running", arguments.quiet) as bar:
         reference = _reference(list(tasks.values()), order, report)
         attempts = attempt_all(programs, list(tasks.values()), order, Runner(walls), report, bar.tell)
@@ -160,7 +163,9 @@ def _jobs(asked: int | None, limits: "Limits") -> int:
     if most < 1:
         raise UsageError(f"--cores: this process has {cores}, not {limits.cores}")
     if asked is not None and asked > most:
-        raise UsageError(f"--jobs: {asked} with {limits.cores} each need {asked * limits.cores} cores, and there are {cores}")
+        raise UsageError(
+            f"--jobs: {asked} with {limits.cores} each need {asked * limits.cores} cores, and there are {cores}"
+        )
     return asked or most
 
 
@@ -191,12 +196,12 @@ def _conditions(order: "Order", walls: "Walls", rubric: "Rubric") -> list[str]:
     tolerated = f"Tolerated: {', '.join(sorted(rubric.tolerate))}." if rubric.tolerate else ""
     charge = "the first scene in which it is found" if rubric.once else "each scene in which it is found"
     return [
-        f"Pictures of {order.width} x {order.height} pixels. Each program had {cores} to itself, {limits.seconds:g} s of "
-        f"processor time on each and {CLOCK:g} times as long by the clock, {limits.memory} MiB of memory, "
+        f"Pictures of {order.width} x {order.height} pixels. Each program had {cores} to itself, {limits.seconds:g} s "
+        f"of processor time on each and {CLOCK:g} times as long by the clock, {limits.memory} MiB of memory, "
         f"{limits.output} MiB to write, and {limits.tasks} processes and threads.",
         walls.told,
-        f"A mistake costs marks in {charge}; a wrong picture is worth up to {100 * rubric.partial:g} % of its points, by "
-        "the share of it that is right. Pixels that single precision cannot decide do not count.",
+        f"A mistake costs marks in {charge}; a wrong picture is worth up to {100 * rubric.partial:g} % of its points, "
+        "by the share of it that is right. Pixels that single precision cannot decide do not count.",
         *([tolerated] if tolerated else []),
     ]
 

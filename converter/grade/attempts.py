@@ -10,7 +10,7 @@ import os
 import tempfile
 from collections.abc import Callable, Sequence
 from concurrent.futures import ThreadPoolExecutor, as_completed
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from pathlib import Path
 from queue import SimpleQueue
 
@@ -160,7 +160,7 @@ class _Bench:
         folder = Path(tempfile.mkdtemp(prefix="run-", dir=self.report / WORK))
         try:
             scene = task.copy_to(folder)
-            before = os.listdir(folder)
+            before = [path.name for path in folder.iterdir()]
             command = built.command(scene, order.out, order.width, order.height)
             ending = self.runner.run(command, folder, built.seen, order.limits, self.cores)
             return self._taken(task, folder, before, ending)
@@ -170,9 +170,9 @@ class _Bench:
     def _taken(self, task: Task, folder: Path, before: Sequence[str], ending: Ending) -> Attempt:
         limits = self.order.limits
         trouble = told(ending, limits)
-        spent = {"clock": ending.clock, "cpu": ending.cpu, "memory": ending.memory // MIB}
+        bare = Attempt(trouble, ending.told, ending.clock, ending.cpu, ending.memory // MIB)
         if ending.beyond or ending.trouble:
-            return Attempt(trouble, ending.told, **spent)
+            return bare
         try:
             left = take(folder, self.order.out, [*before, ".tmp"], limits.output * MIB)
             with tempfile.TemporaryDirectory() as name:
@@ -180,7 +180,7 @@ class _Bench:
                 file.write_bytes(left.data)
                 theirs = decode(file, self.runner, self.cores)
         except NoPicture as error:
-            return Attempt(f"{trouble}, and {error}" if trouble else str(error), ending.told, **spent)
+            return replace(bare, trouble=f"{trouble}, and {error}" if trouble else str(error))
         picture = self._place(task, ".png")
         picture.parent.mkdir(parents=True, exist_ok=True)
         height, width, _ = theirs.levels.shape
@@ -188,8 +188,14 @@ class _Bench:
         mistakes = [name for name, made in (("status", trouble), ("name", left.name != self.order.out)) if made]
         if left.name != self.order.out and not trouble:
             trouble = f"its picture is called {left.name}"
-        kept = str(picture.relative_to(self.report))
-        return Attempt(trouble, ending.told if trouble else "", **spent, picture=kept, lossy=theirs.lossy, mistakes=tuple(mistakes))
+        return replace(
+            bare,
+            trouble=trouble,
+            said=ending.told if trouble else "",
+            picture=str(picture.relative_to(self.report)),
+            lossy=theirs.lossy,
+            mistakes=tuple(mistakes),
+        )
 
     # ---- What is stored -----------------------------------------------------------------------------------------
 

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 
 from converter.grade.attempts import Attempt
 from converter.grade.judge import Verdict, mistakes
+from converter.grade.naming import consistent
 from converter.grade.rubric import Mark, Rubric, marks
 from converter.grade.tasks import Task
 from converter.why.student import Deviation
@@ -132,6 +133,7 @@ def grade(
     """Put together what was found, with the marks."""
     rows = []
     for name, by_scene in attempts.items():
-        given = marks(rubric, list(tasks), verdicts[name])
-        rows.append(Row(name, {s: Cell(by_scene[s], verdicts[name][s], given[s]) for s in tasks}))
+        told = consistent(verdicts[name])
+        given = marks(rubric, list(tasks), told)
+        rows.append(Row(name, {s: Cell(by_scene[s], told[s], given[s]) for s in tasks}))
     return Grades(tasks, rows, reference, rubric, conditions)

@@ -25,7 +25,11 @@ OWN = {
     for name, sentence, hint in (
         ("size", "a picture of another size than asked", "the program's third and fourth arguments: width and height"),
         ("name", "a picture under another name than asked", "the program's second argument: the picture's name"),
-        ("status", "a program that fails though its picture is there", "how main() ends: return 0, and no crash before"),
+        (
+            "status",
+            "a program that fails though its picture is there",
+            "how main() ends: return 0, and no crash before",
+        ),
         ("blank", "rows in which nothing is drawn", "the loops over rows and columns, and where the program ends"),
     )
 }
@@ -101,7 +105,7 @@ def _prepared(scene_file: Path, settings: Settings) -> tuple[Scene, Mask]:
 
 
 def _explained(scene: Scene, theirs: Theirs, settings: Settings, spared: Mask) -> Verdict:
-    judged = judge(scene, theirs, settings)
+    judged = judge(scene, theirs, settings, timed=False)
     found = judged.found
     decided = _decided(found.screen.places, spared)
     wrong, left = _share(found.before & decided, decided), _share(found.after & decided, decided)

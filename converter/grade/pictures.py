@@ -50,7 +50,7 @@ def take(folder: Path, out: str, before: Sequence[str], most: int) -> Left:
     """
     within = os.open(folder, os.O_RDONLY | os.O_DIRECTORY | os.O_NOFOLLOW)
     try:
-        names = sorted(set(os.listdir(within)) - {*before})
+        names = sorted(set(os.listdir(within)) - {*before})  # noqa: PTH208 - of a descriptor
         if out not in names:
             others = [name for name in names if Path(name).suffix.lower() in ENDINGS]
             if len(others) != 1:
@@ -87,8 +87,8 @@ def _read(within: int, name: str, most: int) -> bytes:
 def decode(file: Path, runner: Runner, cores: Sequence[int]) -> Theirs:
     """The picture in a file.
 
-    PPM is read here, by a reader that bears anything. Other formats are read by libraries in C, which may crash or never
-    end: by a process of their own, within limits and walls.
+    PPM is read here, by a reader that bears anything. Other formats are read by libraries in C, which may crash or
+    never end: by a process of their own, within limits and walls.
 
     Raises:
         NoPicture: it is none, broken, or too large.
@@ -127,7 +127,12 @@ def _decode_apart(file: Path, runner: Runner, cores: Sequence[int]) -> Picture:
 
 def _own_folders() -> list[Path]:
     """Where Python and this package lie, for a process within walls."""
-    paths = {Path(sys.prefix), Path(sys.base_prefix), Path(sys.executable).parent, Path(sys.executable).resolve().parent}
+    paths = {
+        Path(sys.prefix),
+        Path(sys.base_prefix),
+        Path(sys.executable).parent,
+        Path(sys.executable).resolve().parent,
+    }
     paths |= {Path(path) for path in sys.path if path and Path(path).exists()}
     paths.add(Path(__file__).resolve().parents[2])
     return sorted(p for p in paths if not p.is_relative_to("/usr") and p != Path("/") and p.exists())

@@ -235,7 +235,9 @@ def _copy(folder: Path, copy: Path) -> None:
 
     def strange(parent: str, names: list[str]) -> list[str]:
         kinds = {name: Path(parent, name).lstat().st_mode for name in names}
-        return [name for name, kind in kinds.items() if not (stat.S_ISREG(kind) or stat.S_ISDIR(kind) or stat.S_ISLNK(kind))]
+        return [
+            name for name, kind in kinds.items() if not (stat.S_ISREG(kind) or stat.S_ISDIR(kind) or stat.S_ISLNK(kind))
+        ]
 
     copy.parent.mkdir(parents=True, exist_ok=True)
     shutil.copytree(folder, copy, symlinks=True, ignore=strange)

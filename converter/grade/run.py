@@ -40,7 +40,7 @@ class Limits:
         return CLOCK * self.seconds + 1
 
 
-CLOCK = 2.0
+CLOCK = 3.0
 _PATH = "/usr/local/bin:/usr/bin:/bin"
 _FILES = 10_000
 _BUILD = Limits(seconds=120.0, memory=2048, output=512, tasks=256)
@@ -156,7 +156,7 @@ def told(ending: Ending, limits: Limits) -> str:
     return f"ended with status {ending.status}" if ending.status else ""
 
 
-_BY_SIGNAL = {signal.SIGXCPU: "time", signal.SIGXFSZ: "output"}
+_BY_SIGNAL: dict[int, str] = {signal.SIGXCPU: "time", signal.SIGXFSZ: "output"}
 """Signals by which the kernel keeps to limits."""
 
 

@@ -1,6 +1,5 @@
 """Walls about a program: bubblewrap, where it is there, shows it nothing but the system and its own folders."""
 
-import os
 import subprocess
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -53,11 +52,11 @@ class Walls:
         temporary.mkdir(exist_ok=True)
         words = [self.bubblewrap, "--unshare-all", "--die-with-parent", "--new-session", "--cap-drop", "ALL"]
         words += ["--hostname", "grade", "--proc", "/proc", "--dev", "/dev", "--tmpfs", "/run"]
-        for place in (Path("/tmp"), Path("/dev/shm")):
-            words += ["--bind", str(temporary), str(place)]
+        for shared in ("/tmp", "/dev/shm"):
+            words += ["--bind", str(temporary), shared]
         for name in _SYSTEM:
             if Path(name).is_symlink():
-                words += ["--symlink", os.readlink(name), name]
+                words += ["--symlink", str(Path(name).readlink()), name]
             elif Path(name).exists():
                 words += ["--ro-bind", name, name]
         for name in _SETTINGS:

@@ -176,10 +176,10 @@ class _Watch:
     def until_the_end(self) -> None:
         os.set_blocking(self.output, False)
         watched = [self.output] + ([] if self.abandoned is None else [self.abandoned])
-        pause, ended = _LOOKS, os.pidfd_open(self.pid)
+        look, ended = self.started + _LOOKS, os.pidfd_open(self.pid)
         try:
             while True:
-                ready, _, _ = select.select([*watched, ended], [], [], pause)
+                ready, _, _ = select.select([*watched, ended], [], [], max(0.0, look - time.monotonic()))
                 if self.abandoned in ready:
                     raise Abandoned
                 if self.output in ready and not self._listen():
@@ -191,12 +191,13 @@ class _Watch:
                     while self._listen() and not self.ending.beyond:
                         pass
                     break
-                before = time.monotonic()
-                self.ending.beyond = self.ending.beyond or self._look(before - self.started)
+                now = time.monotonic()
+                if now >= look:
+                    self.ending.beyond = self.ending.beyond or self._look(now - self.started)
+                    look = time.monotonic() + max(_LOOKS, _COST * (time.monotonic() - now))
                 if self.ending.beyond:
-                    self.ending.clock = before - self.started
+                    self.ending.clock = now - self.started
                     break
-                pause = max(_LOOKS, _COST * (time.monotonic() - before))
         finally:
             os.close(ended)
         if not self.ending.beyond:
@@ -272,7 +273,7 @@ class _Stat:
 def _descendants() -> Iterator[_Stat]:
     """All that come from this process, and are still there."""
     children: dict[int, list[_Stat]] = {}
-    for name in os.listdir("/proc"):
+    for name in os.listdir("/proc"):  # noqa: PTH208 - half the time
         if name.isdigit():
             with suppress(OSError, ValueError, IndexError):
                 stat = _Stat.read(int(name))

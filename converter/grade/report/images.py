@@ -36,7 +36,8 @@ def difference(theirs: Picture, right: Picture, lossy: bool) -> Picture:
     """Where a picture is wrong: red over the right one in pale grey; by how much where losses hide it."""
     if lossy:
         apart = np.abs(theirs.astype(np.int16) - right) * _AMPLIFIED
-        return np.minimum(apart, 255).astype(np.uint8)
+        result: Picture = np.minimum(apart, 255).astype(np.uint8)
+        return result
     grey = np.round(160 + 0.35 * right.mean(axis=2)).astype(np.uint8)
     result = np.repeat(grey[:, :, np.newaxis], 3, axis=2)
     result[errors(theirs, right) > EXACT.tolerance] = _RED

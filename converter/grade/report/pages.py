@@ -128,7 +128,9 @@ def _scenes_table(grades: Grades) -> str:
     for k, scene in enumerate(grades.tasks):
         counts = {kind: sum(row.cells[scene].kind == kind for row in grades.rows) for kind in KINDS}
         median = grades.median_clock(scene)
-        cells = "".join(f"<td class='n {kind if count else ''}'>{count or ''}</td>" for kind, count in counts.items())
+        cells = "".join(
+            f"<td class='{f'n {kind}' if count else 'n'}'>{count or ''}</td>" for kind, count in counts.items()
+        )
         rows.append(
             f"<tr><td><span class='shot s{k}'></span></td><td>{escape(scene)}</td>"
             f"<td>{escape(grades.rubric.feature(scene))}</td>"
@@ -138,7 +140,7 @@ def _scenes_table(grades: Grades) -> str:
         )
     kinds = "".join(f"<th title='{escape(told)}'>{kind}</th>" for kind, told in KINDS.items())
     head = f"<tr><th></th><th>scene</th><th>feature</th><th>points</th>{kinds}"
-    return f"<table>{head}<th>class, s</th><th>reference, s</th></tr>{''.join(rows)}</table>"
+    return f"<table class=scenes>{head}<th>class, s</th><th>reference, s</th></tr>{''.join(rows)}</table>"
 
 
 # ---- One program -----------------------------------------------------------------------------------------------------
@@ -170,14 +172,17 @@ def _section(scene: str, cell: Cell, grades: Grades, right: Picture, report: Pat
     return (
         f"<section class='{cell.kind}' id='{escape(scene)}'><h3>{escape(title)} "
         f"<span class=mark>{_points(cell.mark.points)} of {_points(cell.mark.most)}</span></h3>"
-        f"<div class=figures>{''.join(figures)}</div>{''.join(lines)}<p class=pale>{_times(scene, cell, grades)}</p></section>"
+        f"<div class=figures>{''.join(figures)}</div>{''.join(lines)}"
+        f"<p class=pale>{_times(scene, cell, grades)}</p></section>"
     )
 
 
 def _figure(caption: str, source: str, kind: str = "", held: str = "") -> str:
     """A picture; one of that kind gives way to the one that is `held` while the key is."""
     other = f"<img class=held alt='' src='{held}'>" if held else ""
-    return f"<figure class='{kind}'><img alt='{caption}' src='{source}'>{other}<figcaption>{caption}</figcaption></figure>"
+    return (
+        f"<figure class='{kind}'><img alt='{caption}' src='{source}'>{other}<figcaption>{caption}</figcaption></figure>"
+    )
 
 
 def _times(scene: str, cell: Cell, grades: Grades) -> str:
@@ -238,28 +243,24 @@ body{font:15px/1.45 system-ui,sans-serif;margin:1.5rem;max-width:100rem}
 h1{font-size:1.5rem}h2{font-size:1.2rem;margin-top:2rem}h3{font-size:1rem;margin:.2rem 0 .6rem}
 a{color:inherit}.pale,.conditions,small{opacity:.75}
 kbd{border:1px solid;border-radius:3px;padding:0 .3em}
-table{border-collapse:collapse}td,th{padding:.25rem .5rem;text-align:left;vertical-align:top;border-bottom:1px solid #8884}
+table{border-collapse:collapse}
+td,th{padding:.25rem .5rem;text-align:left;vertical-align:top;border-bottom:1px solid #8884}
 td.n{text-align:right;font-variant-numeric:tabular-nums}
 .wide{overflow:auto;max-height:90vh}
 .class thead th{position:sticky;top:0;background:Canvas;z-index:2;cursor:pointer}
 .class tbody th{position:sticky;left:0;background:Canvas;z-index:1}
 .class td a{text-decoration:none;display:block;width:96px}
 .class td small{display:block;font-size:11px;line-height:1.25;overflow-wrap:anywhere}
-.class td:not(.n){border-top:4px solid;padding-top:0;padding-left:0}
+.class td:not(.n){border-top:4px solid var(--kind);padding-top:0;padding-left:0}
 .shot{display:block;width:96px;height:72px;background-size:contain;background-repeat:no-repeat;overflow:hidden}
 .shot img{width:96px;height:72px;object-fit:contain;background:Canvas;display:block}
 .shot.empty{background-image:none;background-color:#8883}
 .reference .shot img{visibility:hidden}
-.class .right{border-top-color:var(--right)}.class .forgiven{border-top-color:var(--forgiven)}
-.class .mistakes{border-top-color:var(--mistakes)}.class .unexplained{border-top-color:var(--unexplained)}
-.class .none{border-top-color:var(--none)}
-.key{padding:.1em .5em;border-left:.6em solid;margin-right:.6em}
-.key.right{border-color:var(--right)}.key.forgiven{border-color:var(--forgiven)}.key.mistakes{border-color:var(--mistakes)}
-.key.unexplained{border-color:var(--unexplained)}.key.none{border-color:var(--none)}
-section{border-left:.4rem solid;padding-left:1rem;margin:1.5rem 0}
-section.right{border-color:var(--right)}section.forgiven{border-color:var(--forgiven)}
-section.mistakes{border-color:var(--mistakes)}section.unexplained{border-color:var(--unexplained)}
-section.none{border-color:var(--none)}
+.right{--kind:var(--right)}.forgiven{--kind:var(--forgiven)}.mistakes{--kind:var(--mistakes)}
+.unexplained{--kind:var(--unexplained)}.none{--kind:var(--none)}
+.key{padding:.1em .5em;border-left:.6em solid var(--kind);margin-right:.6em}
+.scenes td[class~=n][class*=' ']{border-bottom:3px solid var(--kind)}
+section{border-left:.4rem solid var(--kind);padding-left:1rem;margin:1.5rem 0}
 .mark{font-weight:normal;opacity:.75}.figures{display:flex;flex-wrap:wrap;gap:1rem}
 figure{margin:0;position:relative}figure img{max-width:min(100%,640px);display:block;image-rendering:pixelated}
 figure .held{position:absolute;top:0;left:0;visibility:hidden}.reference figure .held{visibility:visible}

@@ -39,12 +39,11 @@ def pictures_csv(grades: Grades) -> str:
             verdict, attempt = cell.verdict, cell.attempt
             shares = ("", "") if verdict is None else (f"{verdict.wrong:.6f}", f"{verdict.left:.6f}")
             causes = "" if verdict is None else " ".join(verdict.causes)
-            rows.append(
-                [row.name, scene, grades.rubric.feature(scene), cell.kind]
-                + [_number(cell.mark.points), _number(cell.mark.most), *shares, causes, attempt.trouble]
-                + [f"{attempt.clock:.3f}", f"{attempt.cpu:.3f}", attempt.memory]
-                + [f"{grades.reference[scene].clock:.3f}", _seconds(grades.median_clock(scene))]
-            )
+            marked = (_number(cell.mark.points), _number(cell.mark.most))
+            spent = (f"{attempt.clock:.3f}", f"{attempt.cpu:.3f}", attempt.memory)
+            others = (f"{grades.reference[scene].clock:.3f}", _seconds(grades.median_clock(scene)))
+            told = (row.name, scene, grades.rubric.feature(scene), cell.kind)
+            rows.append((*told, *marked, *shares, causes, attempt.trouble, *spent, *others))
     return _csv(header, rows)
 
 
@@ -52,7 +51,15 @@ def mistakes_csv(grades: Grades) -> str:
     """A row a mistake: how many made it, and who."""
     header = ["mistake", "part", "programs", "scenes", "sentence", "look_at", "who"]
     rows = (
-        [m.name, m.part, len(who), len({s for scenes in who.values() for s in scenes}), m.sentence, m.hint, " ".join(who)]
+        [
+            m.name,
+            m.part,
+            len(who),
+            len({s for scenes in who.values() for s in scenes}),
+            m.sentence,
+            m.hint,
+            " ".join(who),
+        ]
         for m, who in grades.mistakes()
     )
     return _csv(header, rows)
@@ -97,14 +104,18 @@ def row_json(row: Row) -> dict[str, Any]:
 
 def _cell_json(scene: str, cell: Cell) -> dict[str, Any]:
     verdict, attempt = cell.verdict, cell.attempt
-    found: dict[str, Any] = {} if verdict is None else {
-        "size": [verdict.width, verdict.height],
-        "wrong": verdict.wrong,
-        "wrong_with_mistakes": verdict.left,
-        "mistakes": list(verdict.causes),
-        "alternatives": {name: list(others) for name, others in verdict.alternatives.items() if others},
-        "left": [{"object": o, "mechanism": m, "share": share} for o, m, share in verdict.places],
-    }
+    found: dict[str, Any] = (
+        {}
+        if verdict is None
+        else {
+            "size": [verdict.width, verdict.height],
+            "wrong": verdict.wrong,
+            "wrong_with_mistakes": verdict.left,
+            "mistakes": list(verdict.causes),
+            "alternatives": {name: list(others) for name, others in verdict.alternatives.items() if others},
+            "left": [{"object": o, "mechanism": m, "share": share} for o, m, share in verdict.places],
+        }
+    )
     return {
         "scene": scene,
         "found": cell.kind,
