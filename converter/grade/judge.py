@@ -46,6 +46,7 @@ class Verdict:
         wrong: share of its pixels that are wrong; those that single precision cannot decide do not count.
         left: share that is wrong with the causes, too.
         causes: the mistakes that lead to it, by name.
+        spoiled: for each of them the share of the picture that is wrong by it alone.
         alternatives: for some of them others that look the same here.
         sentence: all of that, in words.
         places: where the pixels lie that are left: object, mechanism, share.
@@ -58,6 +59,7 @@ class Verdict:
     wrong: float
     left: float
     causes: tuple[str, ...]
+    spoiled: dict[str, float]
     alternatives: dict[str, tuple[str, ...]]
     sentence: str
     places: tuple[tuple[str, str, float], ...] = ()
@@ -111,11 +113,12 @@ def _explained(scene: Scene, theirs: Theirs, settings: Settings, spared: Mask) -
     wrong, left = _share(found.before & decided, decided), _share(found.after & decided, decided)
     causes = (*found.causes, *([ACNE] if judged.acne else []), *(["blank"] if judged.blank.any() else []))
     right = judged.right or (not causes and wrong <= FEW)
+    spoiled = {cause: count / max(len(decided), 1) - left for cause, count in found.without.items()}
     if judged.acne:
-        left = 0.0
+        spoiled[ACNE], left = left, 0.0
     if judged.blank.any():
-        blank = float(judged.blank.mean())
-        wrong, left = blank + (1 - blank) * wrong, blank + (1 - blank) * left
+        spoiled["blank"] = float(judged.blank.mean())
+        wrong = spoiled["blank"] + (1 - spoiled["blank"]) * wrong
     places = () if right else tuple(places_left(judged))
     if right and not judged.right:
         sentence = "The picture is right, but for pixels that single precision cannot decide."
@@ -123,7 +126,7 @@ def _explained(scene: Scene, theirs: Theirs, settings: Settings, spared: Mask) -
         sentence = " ".join(filter(None, (verdict(judged), left_sentence(places, judged))))
     told = tuple((place.object, place.mechanism, place.share) for place in places[:5])
     alternatives = {cause: found.alternatives.get(cause, ()) for cause in found.causes}
-    return Verdict(*_size(settings), right, wrong, left, causes, alternatives, sentence, told)
+    return Verdict(*_size(settings), right, wrong, left, causes, spoiled, alternatives, sentence, told)
 
 
 def _compared(scene: Scene, levels: Picture, lossy: bool, settings: Settings, spared: Mask, why: str) -> Verdict:
@@ -136,7 +139,7 @@ def _compared(scene: Scene, levels: Picture, lossy: bool, settings: Settings, sp
     wrong = _share(likeness.wrong(draw(scene, settings)[ys, xs], levels[ys, xs], places) & decided, decided)
     right = wrong <= FEW
     sentence = "The picture is right." if right else f"{100 * wrong:.1f} % of the picture is wrong ({why})."
-    return Verdict(*_size(settings), right, wrong, wrong, (), {}, sentence)
+    return Verdict(*_size(settings), right, wrong, wrong, (), {}, {}, sentence)
 
 
 def _size(settings: Settings) -> tuple[int, int]:

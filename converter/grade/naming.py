@@ -50,15 +50,17 @@ def _chosen(possible: Mapping[Found, set[str]]) -> dict[Found, str]:
 
 def _renamed(scene: str, verdict: Verdict, chosen: Mapping[Found, str]) -> Verdict:
     known = mistakes()
-    causes, alternatives, sentence = [], {}, verdict.sentence
+    causes, alternatives, spoiled, sentence = [], {}, {}, verdict.sentence
     for old in verdict.causes:
         new = chosen[scene, old]
         causes.append(new)
+        spoiled[new] = verdict.spoiled.get(old, 0.0)
         others = {old, *verdict.alternatives.get(old, ())} - {new}
         alternatives[new] = tuple(name for name in known if name in others)
         for one, other in ((known[old].sentence, known[new].sentence), (_capital(old), _capital(new))):
             sentence = sentence.replace(one, other)
-    return replace(verdict, causes=tuple(causes), alternatives=alternatives, sentence=sentence)
+    renamed = replace(verdict, causes=tuple(causes), spoiled=spoiled, alternatives=alternatives)
+    return replace(renamed, sentence=sentence)
 
 
 def _capital(name: str) -> str:

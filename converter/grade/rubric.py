@@ -85,7 +85,8 @@ def marks(rubric: Rubric, scenes: Sequence[str], verdicts: Mapping[str, Verdict 
         free = rubric.tolerate | part.tolerate | (charged if rubric.once else set())
         forgiven = [c for c in verdict.causes if free & {c, *verdict.alternatives.get(c, ())}]
         costing = [c for c in verdict.causes if c not in forgiven]
-        wrong = verdict.wrong if costing else verdict.left
+        by_costing = sum(max(verdict.spoiled.get(cause, 0.0), 0.0) for cause in costing)
+        wrong = min(verdict.left + by_costing, max(verdict.left, verdict.wrong))
         full = verdict.right or (verdict.causes and not costing and wrong <= FEW)
         share = 1.0 if full else rubric.partial * (1 - wrong)
         result[scene] = Mark(part.points * share, part.points, tuple(forgiven))

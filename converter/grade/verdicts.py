@@ -19,7 +19,7 @@ from converter.why.picture import read_theirs
 
 JUDGED = "judged"
 """Folder of a report that holds verdicts."""
-_VERSION = "1"
+_VERSION = "2"
 
 
 def judge_all(
