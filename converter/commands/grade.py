@@ -95,6 +95,10 @@ def _count(text: str) -> int:
 
 def run(arguments: argparse.Namespace) -> int:
     """Run, judge, and report."""
+    import os
+
+    if not hasattr(os, "pidfd_open"):
+        raise UsageError("programs are run within limits on Linux only")
     from converter.commands.notes import say
     from converter.commands.progress import ProgressBar
     from converter.grade.attempts import Order, attempt_all
