@@ -90,7 +90,7 @@ def report(scenes, tmp_path_factory):
         program(root / "link", 'ln -s "$here/../right/$name.ppm" "$2"'),
         program(root / "half", 'printf "P6\\n96 72\\n255\\nabc" > "$2"'),
         program(root / "nothing", "true"),
-        program(root / "loop", "while :; do :; done"),
+        program(root / "loop", "timeout 20 sh -c 'while :; do :; done'"),
         program(root / "spares", '[ "$name" = 03_lamp ] && cp "$here/../right/$name.ppm" "$2" || kill -SEGV $$'),
     ]
     words = ["grade", *map(str, programs), "--scenes", str(scenes), "-o", str(out), "--size", f"{WIDTH}x{HEIGHT}"]
