@@ -65,6 +65,14 @@ def test_points_of_decimal_numbers_lie_on_spheres(size):
     assert not on_sphere(*scaled, 7.0 * size * (1 - 1e-15))
 
 
+def test_the_bound_is_that_of_three_roundings():
+    """A number that is off by its own rounding counts, and one that is off by twice as much does not."""
+    assert on_plane((1.0, 0.0, 0.0), (1.0, 0.0, 0.0, -1.0 - 2.0**-52))
+    assert not on_plane((1.0, 0.0, 0.0), (1.0, 0.0, 0.0, -1.0 - 2.0**-51))
+    assert on_sphere((3.0, 0.0, 0.0), (1.0, 0.0, 0.0), 2.0 + 2.0**-51)
+    assert not on_sphere((3.0, 0.0, 0.0), (1.0, 0.0, 0.0), 2.0 + 2.0**-50)
+
+
 def test_nothing_lies_on_a_sphere_that_is_smaller_than_roundings():
     center = (0.0, 0.0, 1e20)
     assert not on_sphere(center, center, 1.0)

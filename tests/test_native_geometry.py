@@ -269,3 +269,11 @@ def test_touching_spheres_light_up_to_the_point_of_contact(precision, scale):
         assert ray["hit"]["object"] == 0
         (light,) = ray["hit"]["lights"]
         assert (light["cosine"] > 0) == (light["diffuse"][0] > 0)
+
+
+def test_a_body_that_begins_within_the_error_of_the_eye_is_seen_from_within(precision):
+    # The eye lies on the first body, and one unit in the last place above the second.
+    slab = [(0, 1, 0, -math.nextafter(0.1, 0)), (0, -1, 0, -1)]
+    hit = hit_of([[(0, 1, 0, -0.1)], slab], (0, 0.1, 0), (0, -1, 0), precision)
+    assert (hit["object"], hit["plane"], hit["entering"]) == (1, 1, False)
+    assert close(hit["t"], 1.1, precision, 2)
