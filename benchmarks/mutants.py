@@ -9,6 +9,7 @@ processor, and put in the place of the installed module until the end. Status 1:
 
 import os
 import re
+import shlex
 import shutil
 import signal
 import subprocess
@@ -44,7 +45,7 @@ def build() -> bool:
 
 def noticed(tests: str) -> str:
     """The first test that fails; empty if none does."""
-    command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *tests.split()]
+    command = [sys.executable, "-m", "pytest", "-x", "-q", "-p", "no:cacheprovider", *shlex.split(tests)]
     try:
         run = subprocess.run(
             command,
