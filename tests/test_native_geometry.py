@@ -277,3 +277,10 @@ def test_a_body_that_begins_within_the_error_of_the_eye_is_seen_from_within(prec
     hit = hit_of([[(0, 1, 0, -0.1)], slab], (0, 0.1, 0), (0, -1, 0), precision)
     assert (hit["object"], hit["plane"], hit["entering"]) == (1, 1, False)
     assert close(hit["t"], 1.1, precision, 2)
+
+
+def test_a_ball_that_begins_within_the_error_of_the_eye_is_seen_from_within(precision):
+    ball = ((0, math.nextafter(0.05, 0), 0), 0.05)
+    hit = hit_of([[(0, 1, 0, -0.1)], ball], (0, 0.1, 0), (0, -1, 0), precision)
+    assert (hit["object"], hit["entering"]) == (1, False)
+    assert close(hit["t"], 0.1, precision)
