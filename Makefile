@@ -3,6 +3,7 @@
 # make check    run the linters, the type checker, and the compiler with warnings as errors
 # make figures  print the figures of the README, and draw its chart
 # make stability  find where each method fails, and write docs/stability.md
+# make mutants  plant mistakes, and tell which of them the tests do not notice
 # make fuzz     look for inputs that fail, for SECONDS; what it finds is left in out/fuzz
 #
 # Each sets up .venv first, where it is missing or older than what it was made from.
@@ -18,7 +19,7 @@ BIN := .venv/bin
 SOURCES := pyproject.toml CMakeLists.txt $(wildcard native_tracer/src/*)
 CPP := $(wildcard native_tracer/src/*.cpp native_tracer/src/*.h)
 
-.PHONY: render test check figures stability fuzz clean
+.PHONY: render test check figures stability fuzz mutants clean
 .DELETE_ON_ERROR:
 
 # Status 1 of the comparison says that the pictures differ, which is no failure to render.
@@ -50,6 +51,9 @@ figures: .venv/.installed
 
 fuzz: .venv/.fuzzer
 	$(BIN)/python fuzzing/fuzz_scenes.py $(SECONDS)
+
+mutants: .venv/.installed
+	$(BIN)/python benchmarks/mutants.py
 
 stability: .venv/.installed
 	@mkdir -p docs

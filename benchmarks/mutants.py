@@ -83,6 +83,7 @@ def fate(mutant: dict[str, Any], tests: str) -> str:
 
 
 def main(names: list[str]) -> int:
+    """Tell the fate of the mutants of these names, or of all."""
     table = tomllib.loads(Path(__file__).with_suffix(".toml").read_text(encoding="utf-8"))
     chosen = [mutant for mutant in table["mutants"] if not names or mutant["name"] in names]
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # not without restoring the file
