@@ -1,6 +1,6 @@
 """Prints the figures of the README: agreement of the renderers on every scene, why pixels disagree, speed, memory.
 
-    python benchmarks/figures.py [memory] [agreement] [classes] [speed] [samples]
+    python benchmarks/figures.py [memory] [agreement] [bytes] [classes] [speed] [samples]
 
 Times are medians of runs that take turns, so that a machine whose speed drifts is fair to all; they depend on the
 machine, their ratios much less. POV-Ray joins where it is installed.
@@ -28,19 +28,34 @@ from converter.renderers.methods import METHODS
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
 from converter.renderers.povray import PovrayRenderer
-from converter.scene.parser import load_scene
+from converter.scene.model import Scene
+from converter.scene.parser import load_scene, parse_scene
 from converter.scene.settings import Settings
+from native_tracer import quantize
+
+sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "scenes"))
+
+from random_scenes import random_scene
+from round_numbers import SQUARES, TEXTURE
 
 ROOT = Path(__file__).resolve().parent.parent
 FIGURE1 = ROOT / "scenes" / "figure1.in"
 PROGRAMS = Path(sys.executable).parent
 RUNS, FEW_RUNS = 11, 3
+RANDOM_SCENES = 200
 
 
 def main() -> None:
     """Print what the command line names, or everything."""
     # Memory first: Linux counts what this process has held as held by those that it starts.
-    parts = {"memory": memory, "agreement": agreement, "classes": classes, "speed": speed, "samples": samples}
+    parts = {
+        "memory": memory,
+        "agreement": agreement,
+        "bytes": same_bytes,
+        "classes": classes,
+        "speed": speed,
+        "samples": samples,
+    }
     for name in sys.argv[1:] or parts:
         parts[name]()
         print()
@@ -76,6 +91,39 @@ def agreement() -> None:
         counts = "".join(f"{count:>10}" for count in wrong)
         seconds = f"{medians[0]:>12.3f}" + "".join(f"{median:>10.3f}" for median in medians[1:])
         print(f"{file.name:<18}{counts}{seconds}  {pictures['default'].statistics['intersections']}", flush=True)
+
+
+def same_bytes() -> None:
+    """The gallery's scenes at 400 x 300, and random ones: whether both renderers' .ppm files are the same."""
+    print("400 x 300: bytes of both renderers' .ppm files that differ, by how many levels at most, and pixels whose")
+    print("colours differ by more than a tenth of a level: in others a rounding has decided between two levels")
+    settings = Settings(width=400, height=300)
+    for file in sorted((ROOT / "scenes").glob("*.in")):
+        print(f"{file.name:<18}{_bytes_told(*_unlike_bytes(load_scene(file), settings))}", flush=True)
+    same = 0
+    with tempfile.TemporaryDirectory() as folder:
+        Path(folder, TEXTURE).write_text(SQUARES, encoding="ascii")
+        for seed in range(RANDOM_SCENES):
+            scene = parse_scene(str(random_scene(seed)), Path(folder, "random.in"))
+            found = _unlike_bytes(scene, Settings(width=160, height=120))
+            same += found[0] == 0
+            if found[0]:
+                print(f"{f'random {seed}':<18}{_bytes_told(*found)}", flush=True)
+    print(f"of {RANDOM_SCENES} random scenes (scenes/random_scenes.py), at 160 x 120, {same} are the same")
+
+
+def _unlike_bytes(scene: Scene, settings: Settings) -> tuple[int, int, int]:
+    """How many bytes of the renderers' pictures differ, by how many levels at most, and how many pixels do visibly."""
+    renderers = NativeRenderer(), MitsubaRenderer()
+    pictures = [np.asarray(renderer.render(scene, settings).pixels) for renderer in renderers]
+    levels = [np.frombuffer(quantize(picture), np.uint8).astype(int) for picture in pictures]
+    off = np.abs(levels[0] - levels[1])
+    far = np.abs(pictures[0].astype(float) - pictures[1]).max(axis=2) > 0.1 / 255
+    return int((off > 0).sum()), int(off.max()), int(far.sum())
+
+
+def _bytes_told(unlike: int, most: int, far: int) -> str:
+    return f"{unlike:>6}, {most:>3} levels, {far:>4} pixels" if unlike else "  same"
 
 
 def classes() -> None:

@@ -15,6 +15,7 @@ VARIANTS = ("llvm_ad_rgb", "cuda_ad_rgb")
 """Variants that the plugins run in. Python plugins do not work in Mitsuba's scalar variants."""
 
 PLUGINS = (
+    "mitsuba_plugins.textures.solid",
     "mitsuba_plugins.textures.solid_checker",
     "mitsuba_plugins.textures.projected_bitmap",
     "mitsuba_plugins.bsdfs.phong",

@@ -126,7 +126,7 @@ def keep_reserve() -> None:
     """Keep some memory for the time when there is no more."""
 
 def quantize(pixels: Buffer) -> bytes:
-    """8-bit RGB of a float32 buffer: round(255 c), c clamped to 0..1, a NaN black."""
+    """8-bit RGB of a float32 buffer: the nearest of 255 levels to c, halves up, c clamped to 0..1, a NaN black."""
 
 def threaded_bvh(low: Buffer, high: Buffer) -> tuple[memoryview[float], memoryview[int], memoryview[int]]:
     """The arrays of a threaded tree over boxes; see `native_tracer.bvh`."""

@@ -1,5 +1,7 @@
 """Both renderers on every scene of the gallery: what one draws the other draws."""
 
+import sys
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -7,10 +9,16 @@ import pytest
 from variant import VARIANT
 
 from converter.compare.metrics import compare_pixels
+from converter.images.write import write_image
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
-from converter.scene.parser import load_scene
+from converter.scene.parser import load_scene, parse_scene
 from converter.scene.settings import Settings
+
+sys.path.insert(0, str(Path(__file__).parent.parent / "scenes"))
+
+from random_scenes import random_scene
+from round_numbers import SQUARES, TEXTURE
 
 SCENES = sorted((Path(__file__).parent.parent / "scenes").glob("*.in"))
 SETTINGS = Settings(width=200, height=150)
@@ -28,9 +36,41 @@ def agree(scene, settings, renderer, tmp_path, most=0):
     assert difference.disagreeing <= most, f"{difference.largest}; pictures: {tmp_path}"
 
 
+def same_files(scene, settings, tmp_path):
+    """Draw a scene with both renderers, and compare the .ppm files, byte by byte."""
+    files = [tmp_path / "native.ppm", tmp_path / "mitsuba.ppm"]
+    for file, renderer in zip(files, (NativeRenderer(), MitsubaRenderer(VARIANT)), strict=True):
+        write_image(file, renderer.render(scene, settings).pixels, settings.width, settings.height)
+    first, second = (np.frombuffer(file.read_bytes(), np.uint8) for file in files)
+    assert len(first) == len(second)
+    assert np.count_nonzero(first != second) == 0
+
+
 @pytest.mark.parametrize("file", SCENES, ids=lambda file: file.stem)
 def test_default_method_agrees(mi, file, tmp_path):
     agree(load_scene(file), SETTINGS, MitsubaRenderer(VARIANT), tmp_path)
+
+
+@pytest.mark.parametrize("file", SCENES, ids=lambda file: file.stem)
+def test_both_renderers_write_the_same_bytes(mi, file, tmp_path):
+    same_files(load_scene(file), Settings(width=160, height=120), tmp_path)
+
+
+def test_random_scenes_make_the_same_bytes(mi, tmp_path):
+    (tmp_path / TEXTURE).write_text(SQUARES, encoding="ascii")
+    for seed in range(34, 58):
+        scene = parse_scene(str(random_scene(seed)), tmp_path / "random.in")
+        same_files(scene, Settings(width=160, height=120), tmp_path)
+
+
+def test_light_is_added_up_in_double_precision(mi, tmp_path):
+    """Of hundreds of dim lights, whose sum in single precision would be off by some of its last digits."""
+    scene = load_scene(next(file for file in SCENES if file.stem == "figure1"))
+    light = replace(scene.lights[0], color=(0.0017, 0.0013, 0.0011))
+    scene = replace(scene, lights=(light,) * 300)
+    settings = Settings(width=80, height=60, samples=4)
+    pictures = [np.asarray(r.render(scene, settings).pixels) for r in (NativeRenderer(), MitsubaRenderer(VARIANT))]
+    assert np.count_nonzero(pictures[0] != pictures[1]) <= 2
 
 
 @pytest.mark.parametrize("name", ["figure1", "bubble", "solids", "endless", "room", "nested"])

@@ -636,7 +636,7 @@ def test_inspect_json(whitted, scene, tmp_path):
             ".2 .6 .3 20 .2 0 0",
             "1 0 0 1 0 0 0",
             0.3,
-            "0.3: the bound is loose here; whitted compare --reference native-cutoff-0",
+            "0.3: the bound is loose here; whitted compare --reference native-cutoff-4096",
         ),
         (
             "5 5 -9 .8 .8 .8 1 0 0",

@@ -14,6 +14,7 @@ from converter.renderers.native import NativeRenderer
 from converter.scene import cutoff as cutoff_module
 from converter.scene.cutoff import CutoffBound, cutoff_bound
 from converter.scene.model import Camera, Checker, Finish, Light, Object, Polyhedron, Scene, Solid, Sphere, Texmap
+from converter.scene.needs import scene_needs
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
 
@@ -46,11 +47,15 @@ def dark(*size: int, **changes) -> Settings:
 
 
 def difference(scene: Scene, settings: Settings) -> float:
-    """The largest difference that the cut-off makes; infinite where only one of the pictures has a colour."""
-    with_cutoff, without = (
-        np.asarray(NativeRenderer().render(scene, s).pixels, dtype=float)
-        for s in (settings, replace(settings, cutoff=0))
-    )
+    """The largest difference that the cut-off makes; infinite where only one of the pictures has a colour.
+
+    Where rays branch and no depth is set, the limit without a cut-off may be lower: then half the cut-off is compared.
+    """
+    more = replace(settings, cutoff=0)
+    needs = scene_needs(scene, settings)
+    if needs.branches and settings.max_depth is None:
+        more = replace(settings, cutoff=settings.cutoff / 2, max_depth=needs.max_depth)
+    with_cutoff, without = (np.asarray(NativeRenderer().render(scene, s).pixels, dtype=float) for s in (settings, more))
     same = (with_cutoff == without) | (np.isnan(with_cutoff) & np.isnan(without))
     differences = np.abs(np.subtract(with_cutoff, without, out=np.zeros_like(without), where=~same))
     return float(np.nan_to_num(differences, nan=np.inf).max())
@@ -206,7 +211,7 @@ def test_colours_without_end() -> None:
 
 
 def test_nothing_is_dropped() -> None:
-    mirrors = scene_of((mirror(0.99), ROOM))  # 0.99^64 > 1/512: the depth limit is the same with and without a cut-off
+    mirrors = scene_of((mirror(1.0), ROOM))  # the depth limit is the same with and without a cut-off
     assert cutoff_bound(mirrors, Settings()).bound == 0
     assert difference(mirrors, Settings(8, 6)) == 0
     assert cutoff_bound(scene_of((mirror(0.5), ROOM)), Settings(cutoff=0)).bound == 0

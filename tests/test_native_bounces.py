@@ -235,6 +235,7 @@ def test_rays_are_counted_by_kind(precision):
         "transmitted": 0,
         "shadow": 0,
         "deepest": 3,
+        "pixels_too_deep": 200,
         "threads": 1,
         "search": "brute",
     }

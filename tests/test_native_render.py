@@ -347,6 +347,10 @@ def test_quantize_clamps_and_rounds_halves_up():
     values = np.array([0, 1, -3, 7, 0.5, 0.1, 0.3, math.nan, math.inf, -math.inf, 0.5 / 255, 0.49 / 255], np.float32)
     expected = bytes([0, 255, 0, 255, 128, 26, 77, 0, 255, 0, 1, 0])
     assert native_tracer.quantize(values) == expected
+    # A half is a half also where roundings have left it a little below.
+    below = np.array([178.5, 0.5, 254.5], np.float64) / 255
+    assert native_tracer.quantize((below - 9e-5 / 255).astype(np.float32)) == bytes([179, 1, 255])
+    assert native_tracer.quantize((below - 2e-4 / 255).astype(np.float32)) == bytes([178, 0, 254])
     every = np.arange(256, dtype=np.float32) / np.float32(255)
     assert native_tracer.quantize(memoryview(every)) == bytes(range(256))
 

@@ -85,7 +85,7 @@ def test_glass_is_read_by_the_setting():
 def test_only_textures_in_use_are_read(monkeypatch):
     read = []
 
-    def read_texture(path):
+    def read_texture(path, place):
         read.append(path)
         return types.SimpleNamespace(width=2, height=1, texels=array("f", [1, 0, 0, 0, 1, 0]))
 

@@ -12,8 +12,9 @@ from hypothesis import strategies as st
 from strategies import scenes
 
 from converter.scene import geometry
+from converter.scene.depth import MAX_DEPTH
 from converter.scene.model import Camera, Finish, Light, Object, Polyhedron, Scene, Solid, Sphere
-from converter.scene.needs import MAX_DEPTH, MAX_DEPTH_BRANCHING, eta, is_index, scene_needs
+from converter.scene.needs import eta, is_index, scene_needs
 from converter.scene.notices import ior_notices, scene_notices
 from converter.scene.parser import load_scene, parse_scene
 from converter.scene.settings import IorReading, Settings
@@ -103,9 +104,12 @@ def test_lighting(finish: Finish, lights: tuple[Light, ...], lit: bool, glossy: 
         ((replace(MIRROR, kr=0.5),), 1 / 512, 9),
         ((replace(MIRROR, kr=0.5), MIRROR), 1 / 512, 18),
         ((replace(MIRROR, kr=1.0),), 1 / 512, MAX_DEPTH),
+        ((replace(MIRROR, kr=0.99),), 1 / 512, 621),
         ((replace(MIRROR, kr=0.999),), 1 / 512, MAX_DEPTH),
         ((MIRROR,), 0, MAX_DEPTH),
-        ((BOTH,), 1 / 512, MAX_DEPTH_BRANCHING),
+        ((BOTH,), 1 / 512, 28),
+        ((BOTH,), 0, 15),  # 2^16 - 1 rays
+        ((replace(BOTH, kt=0.9),), 1 / 512, 60),
         ((replace(BOTH, kr=0.1, kt=0.1),), 1 / 512, 3),
         ((MATTE,), 1 / 512, 0),
         ((MATTE,), 0, 0),
@@ -113,6 +117,16 @@ def test_lighting(finish: Finish, lights: tuple[Light, ...], lit: bool, glossy: 
 )
 def test_depth(finishes: tuple[Finish, ...], cutoff: float, depth: int) -> None:
     assert scene_needs(scene_of(*finishes), Settings(cutoff=cutoff)).max_depth == depth
+
+
+@pytest.mark.parametrize(("name", "depth"), [("course_glass_9", 60), ("panes_33", 1000)])
+def test_panes_are_followed_to_what_is_behind(name: str, depth: int) -> None:
+    """Of n panes a ray crosses 2 n faces."""
+    count = int(name.rpartition("_")[2])
+    finish = Finish(0.1, 0.1, 0.8, 400, 0.1, 0.9, 1.45) if count == 9 else Finish(0, 0, 0, 1, 0, 1, 1)
+    limit = scene_needs(scene_of(finish), Settings()).depth
+    assert limit.bounces == depth > 2 * count
+    assert limit.waiting <= 16
 
 
 def test_depth_can_be_set() -> None:

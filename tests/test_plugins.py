@@ -65,8 +65,20 @@ def test_checker_boundary_is_exact_in_double_precision(mi):
     assert texture.color_at(mi.Point3d(0.05, y, 0.05)).x[0] == expected
 
 
-def test_checker_divides_by_its_size(mi):
-    """0.3 / 0.1 lies below 3, and 0.3 times the reciprocal does not."""
+def test_solid_keeps_its_color_exactly(mi):
+    texture = mi.load_dict({"type": "solid", "color": {"type": "rgb", "value": [0.1, -0.7, 3.3]}})
+    assert np.ravel(texture.color_at(mi.Point3d(1, 2, 3))).tolist() == [0.1, -0.7, 3.3]
+    single = np.array([0.1, -0.7, 3.3], np.float32)
+    assert np.array_equal(np.ravel(texture.eval(mi.SurfaceInteraction3f())), single)
+    assert not texture.is_spatially_varying()
+    parameters = mi.traverse(texture)
+    parameters["color"] = mi.Color3f(0.5, 0.25, 0)
+    parameters.update()
+    assert np.ravel(texture.color_at(mi.Point3d(0))).tolist() == [0.5, 0.25, 0]
+
+
+def test_checker_has_its_edges_at_whole_numbers_of_sizes(mi):
+    """0.3 / 0.1 lies below 3, by its roundings only."""
     texture = mi.load_dict(
         {
             "type": "solid_checker",
@@ -75,9 +87,9 @@ def test_checker_divides_by_its_size(mi):
             "size": 0.1,
         }
     )
-    x = np.arange(-5000, 5001) / 10
-    found = np.asarray(texture.color_at(mi.Point3d(mi.Float64(x), 0.05, 0.05)).x)
-    assert np.array_equal(found, np.floor(x / 0.1) % 2 == 0)
+    tile = np.arange(-5000, 5001)
+    found = np.asarray(texture.color_at(mi.Point3d(mi.Float64(tile / 10), 0.05, 0.05)).x)
+    assert np.array_equal(found, tile % 2 == 0)
 
 
 def test_projected_bitmap_truncates_and_repeats(mi):
@@ -263,9 +275,10 @@ def test_quotients_are_rounded_once(mi):
 
 HOST_DIVISIONS = {
     "integrators/analytic.py": {"_bound"},
-    "integrators/contacts.py": {"of"},
+    "integrators/contacts.py": {"__init__", "of"},
     "integrators/geometry.py": {"_normalised"},
-    "integrators/pace.py": {"rows", "samples", "launch"},
+    "integrators/rounding.py": {"camera_errors"},
+    "integrators/pace.py": {"__init__", "rows", "samples", "launch"},
     "trial.py": {"_memory"},
     "integrators/whitted.py": {"__init__", "_bands", "_corners", "sample_offsets"},
 }

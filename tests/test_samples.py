@@ -40,7 +40,7 @@ def test_most_of_the_time_goes_into_rays(clock, size, nanoseconds, branching):
 
     width, height = size
     for samples in (1, 4, 16, 64, 256, 1024):
-        pace, first, launches, longest = Pace(branching), 0, 0, 0.0
+        pace, first, launches, longest = Pace(branching, 16), 0, 0, 0.0
         clock.now = 0.0
         while first < height:
             rows, done = min(height - first, pace.rows(width)), 0

@@ -17,16 +17,20 @@ from converter.studies.families import polyhedra, ray_trees, reflection, refract
 FAMILIES = {f.name: f for module in (polyhedra, reflection, refraction, ray_trees) for f in module.FAMILIES}
 
 HOLDS = {
+    "slivers": 1e-11,
+    "horizon": 1e11,
+    "empty": 1e-13,
     "mirror-corner": 1e10,
     "trapped-ray": 40.0,
-    "critical-angle": 1e-13,
-    "grazing-glass": 1e-13,
+    "critical-angle": 1e-12,
+    "grazing-glass": 1e-11,
     "nested-glass": 1e-13,
     "bubble": 1e-13,
-    "overlapping-glass": 1e-14,
+    "overlapping-glass": 1e-12,
 }
 """The last value at which double precision holds, of families in which it does not hold to the end: there, surfaces are
-nearer to one another than positions are certain, or the last digit of a number decides what is seen."""
+nearer to one another, or rays to a limit, than the bounds within which numbers count as equal, or the last digit of a
+number decides what is seen."""
 
 
 def last_value(family):

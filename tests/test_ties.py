@@ -96,7 +96,7 @@ def test_scenes_of_round_numbers_agree(mi, round_numbers, folder):
 
 # ---- Far from the origin
 
-HOLDS = 1e10
+HOLDS = 1e8
 """The distance from the origin, in pictures, up to which double precision knows the numbers of a scene well enough."""
 
 

@@ -276,9 +276,10 @@ def _draw(
     """The scene by one or two methods, in turns where they draw more than once: a busy machine slows both."""
     import numpy as np
 
-    from converter.commands.notes import load_with_notices
+    from converter.commands.notes import depth_warning, load_with_notices, say
     from converter.commands.progress import ProgressBar
     from converter.compare.report import Pictures, Timing
+    from converter.renderers.methods import METHODS
 
     assert compared.scene is not None
     scene = load_with_notices(compared.scene, chosen[0].settings, arguments.quiet)
@@ -294,6 +295,8 @@ def _draw(
             if turn == 0:
                 timings[name] = Timing(spent, stages=rendering.seconds)
                 drawn[name] = np.asarray(rendering.pixels)
+                if warning := depth_warning(rendering, scene, settings, METHODS[name]):
+                    say(f"warning: {name}: {warning}", arguments.quiet)
             else:
                 timings[name].warm.append(spent)
     reference = chosen[0].name

@@ -4,7 +4,7 @@ import time
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from converter.commands.notes import load_with_notices, say
+from converter.commands.notes import depth_warning, load_with_notices, say
 from converter.commands.progress import ProgressBar
 from converter.files import check_apart
 from converter.images.write import check_writable, write_image
@@ -28,8 +28,8 @@ def draw(
 ) -> tuple[Rendering, dict[str, float]]:
     """Draw a scene into an image file, which appears whole or not at all; return the picture and seconds by stage.
 
-    With the `method` that the renderer belongs to, regions are named in which it is known to fail. With
-    `keep_partial`, Ctrl-C writes what is finished before `Interrupted` goes on to the caller. `ending` chooses the
+    With the `method` that the renderer belongs to, regions are named in which it is known to fail; None is `raytrace`.
+    With `keep_partial`, Ctrl-C writes what is finished before `Interrupted` goes on to the caller. `ending` chooses the
     image's format, if `out` does not.
 
     Raises:
@@ -61,6 +61,8 @@ def draw(
     drawn = time.perf_counter()
     _write(rendering, out, ending)
     _warn_of_nan(rendering, out, quiet)
+    if warning := depth_warning(rendering, scene, settings, method):
+        say(f"warning: {out}: {warning}", quiet)
     seconds = {"read": read - started, **rendering.seconds, "write": time.perf_counter() - drawn}
     return rendering, seconds
 

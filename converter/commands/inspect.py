@@ -17,6 +17,13 @@ DEFAULT = "native"
 """The method that stands for all that compute in double precision, as those do that draw where nobody chooses."""
 MOST_LEVELS = 8
 """Levels of 255 up to which a bound is told: beyond, it says less of the picture than of how often rays may split."""
+RULES = {
+    "set": " (--max-depth)",
+    "cutoff": " (all that the cut-off asks for)",
+    "bounces": " (the most that are ever followed)",
+    "rays": " (one more, and a pixel might have 65536 rays)",
+}
+"""What made the limit of depth."""
 COEFFICIENTS = ("ka", "kd", "ks", "alpha", "kr", "kt", "ior")
 
 
@@ -136,24 +143,25 @@ def _overview(found: dict[str, Any]) -> list[tuple[str, str]]:
     rows.append(("needs", ", ".join(shading + bounces) or "nothing but ambient light"))
     if bounces:
         split = "rays split in two" if needs["branches"] else "every ray has one successor"
-        rows.append(("depth", f"{needs['max_depth']} bounces, {split}"))
-    rows.append(("cut-off", _cutoff(found["cutoff"])))
+        rows.append(("depth", f"{needs['max_depth']} bounces{RULES[needs['max_depth_rule']]}, {split}"))
+    rows.append(("cut-off", _cutoff(found["cutoff"], needs)))
     for kind, indices in unused.items():
         if indices:
             rows.append((f"unused {kind}", _indices(indices)))
     return rows
 
 
-def _cutoff(found: dict[str, Any]) -> str:
+def _cutoff(found: dict[str, Any], needs: dict[str, Any]) -> str:
     """E.g. "1/512: no channel is off by more than 0.0041 (1.04 of 255 levels)"; no number where it would be useless."""
     cutoff, bound = found["cutoff"], found["bound"]
     share = f"1/{1 / cutoff:.0f}" if cutoff and (1 / cutoff).is_integer() else f"{cutoff:g}"
     if found["unbounded_by"]:
         return f"{share}: no telling how far channels are off, for {found['unbounded_by']}"
     if bound == 0:
-        return f"{share}: drops no ray"
+        within = "" if needs["max_depth_rule"] in ("none", "cutoff") else f" within {needs['max_depth']} bounces"
+        return f"{share}: drops no ray{within}"
     if 255 * bound > MOST_LEVELS:
-        return f"{share}: the bound is loose here; whitted compare --reference native-cutoff-0 measures"
+        return f"{share}: the bound is loose here; whitted compare --reference native-cutoff-4096 measures"
     return f"{share}: no channel is off by more than {_rounded_up(bound)} ({_rounded_up(255 * bound)} of 255 levels)"
 
 

@@ -43,6 +43,7 @@ def inspect_scene(scene: Scene, settings: Settings) -> dict[str, Any]:
             "lit": needs.lit,
             "glossy": needs.glossy,
             "max_depth": needs.max_depth,
+            "max_depth_rule": needs.depth.rule,
         },
         "cutoff": asdict(cutoff_bound(scene, settings)),
         "reading_warnings": scene.warnings,

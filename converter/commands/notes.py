@@ -9,6 +9,7 @@ from converter.scene.model import Scene
 from converter.scene.settings import Settings
 
 if TYPE_CHECKING:
+    from converter.renderers.base import Rendering
     from converter.renderers.methods import Method
 
 
@@ -57,3 +58,27 @@ def load_with_notices(
             for warning in method_warnings(scene, settings, method):
                 say(f"warning: {warning}")
     return scene
+
+
+def depth_warning(
+    rendering: "Rendering", scene: Scene, settings: Settings, method: "Method | None" = None
+) -> str | None:
+    """In how many pixels the depth limit, and not the cut-off, dropped a ray, and which limit would do; None in none.
+
+    `method` drew them; None is `raytrace`, which has no option for it.
+    """
+    from converter.scene.depth import MAX_DEPTH, depth_limit
+
+    count = rendering.statistics.get("pixels_too_deep", 0)
+    if not count:
+        return None
+    limit = depth_limit((scene.finishes[o.finish] for o in scene.objects), settings)
+    option = "--max-depth" if method is not None else "whitted render --max-depth"
+    if method is not None and "max_depth" in method.changes:
+        advice = f"more is not what {method.name} follows"
+    elif limit.needed is not None and limit.needed <= MAX_DEPTH:
+        advice = f"{option} {limit.needed} would do"
+    else:
+        advice = f"{option} {MAX_DEPTH} is the most, and may not do either"
+    pixels = f"{count} of {rendering.width * rendering.height} pixels"
+    return f"{pixels} lack rays that --cutoff would keep, beyond {limit.bounces} bounces: {advice}"

@@ -8,12 +8,12 @@ from dataclasses import fields
 from typing import NoReturn
 
 from converter.commands.exits import UsageError
+from converter.scene.depth import MAX_DEPTH
 from converter.scene.model import Color
 from converter.scene.settings import Settings
 
 MAX_SIZE = 65535
 MAX_SAMPLES = 65536
-MAX_DEPTH = 1000
 MAX_THREADS = 1024
 DEFAULTS = Settings()
 
@@ -166,7 +166,7 @@ def _add_bounce_options(group: argparse._ArgumentGroup) -> None:
         "--max-depth",
         type=_depth,
         metavar="N",
-        help="follow a ray for at most N bounces (as many as the scene needs for --cutoff to act)",
+        help="follow a ray for at most N bounces (as many as --cutoff asks for, within the limits that inspect tells)",
     )
 
 

@@ -1,6 +1,7 @@
 """`whitted pixel`: every ray behind one pixel, in both renderers, and where they first differ."""
 
 import argparse
+from array import array
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -75,6 +76,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _list(scene: "Scene", traced: dict[str, dict[str, Any]]) -> None:
     from converter.compare.ray_listing import list_rays
     from converter.compare.rays import first_unequal, pair_trees
+    from native_tracer import quantize
 
     names, trees = list(traced), [tree["rays"] for tree in traced.values()]
     pairs = pair_trees(trees[0], trees[-1])
@@ -86,8 +88,9 @@ def _list(scene: "Scene", traced: dict[str, dict[str, Any]]) -> None:
     width = max(map(len, names))
     for name, tree in traced.items():
         color = tree["color"]
+        quantized = quantize(array("f", color))
         levels = " ".join(
-            f"{round(255 * min(max(channel, 0), 1)):3}" if channel == channel else "NaN" for channel in color
+            f"{b:3}" if channel == channel else "NaN" for b, channel in zip(quantized, color, strict=True)
         )
         print(f"colour  {name:{width}}  {'  '.join(f'{channel:.8f}' for channel in color)}   of 255: {levels}")
     if len(names) == 2:

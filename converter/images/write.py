@@ -49,7 +49,8 @@ def check_writable(path: str | Path, ending: str | None = None) -> None:
 def write_image(path: str | Path, pixels: Any, width: int, height: int, ending: str | None = None) -> None:
     """Write a picture.
 
-    Formats of 8 bits hold round(255 c), c clamped to 0..1 and NaN as 0, with no gamma; those of `FLOAT_ENDINGS` hold c.
+    Formats of 8 bits hold the nearest of 255 levels (see `native_tracer.quantize`), with no gamma; those of
+    `FLOAT_ENDINGS` hold the colours as they are.
     The file appears as a whole or not at all, whatever happens; an older one is replaced. Into what is special, such as
     a pipe, /dev/null or /dev/stdout, the picture is copied.
 

@@ -95,7 +95,7 @@ def _thickness(s: Situation, index: int) -> float:
 REGIONS = (
     Region(
         ("position",),
-        {"double": 1e-13, "float": 2e-4, "mesh": 2e-4, "offset": 0.2, "ulp": 0.2},
+        {"double": 3e-12, "float": 2e-4, "mesh": 2e-4, "offset": 0.2, "ulp": 0.2},
         _far_from_origin,
     ),
     Region(("distance",), {"float": 1e-5, "offset": 1e-3, "ulp": 1e-2}, _far_from_camera),

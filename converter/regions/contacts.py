@@ -81,8 +81,8 @@ def _closeness(p: Floats, q: Floats, r: float, t: float) -> float:
 
 REGIONS = (
     Region(("gap",), {"double": 1e-14, "float": 2e-6, "mesh": 2e-6}, _gaps),
-    Region(("nearly-coplanar",), {"double": 1e-15, "float": 2e-7, **_EMBREE}, _near_coplanar),
+    Region(("nearly-coplanar",), {"double": 1e-14, "float": 2e-7, **_EMBREE}, _near_coplanar),
     Region(
-        ("nested-glass", "bubble", "overlapping-glass"), {"double": 3e-14, "float": 3e-5, "mesh": 3e-6}, _glass_balls
+        ("nested-glass", "bubble", "overlapping-glass"), {"double": 3e-13, "float": 3e-5, "mesh": 3e-6}, _glass_balls
     ),
 )

@@ -76,11 +76,12 @@ def _plane_mirrors(s: Situation, limit: float) -> Iterator[Finding]:
     bounces = 1 / limit
     if s.needs.max_depth <= bounces:
         return
-    for i, o in enumerate(s.scene.objects):
-        if isinstance(o.shape, Polyhedron) and _shiny(s, i, bounces):
-            text = f"object {i} is a mirror that is followed for {s.needs.max_depth} bounces (more than {bounces:.0f})"
-            yield Finding(o.line, text)
-            return
+    shiny = [i for i in range(len(s.scene.objects)) if _shiny(s, i, bounces)]
+    flat = [i for i in shiny if isinstance(s.scene.objects[i].shape, Polyhedron)]
+    # A ray that leaves the outside of a lone mirror never comes back to it.
+    if flat and (len(shiny) > 1 or s.finish(flat[0]).kt > 0 or _encloses(s, flat[0])):
+        text = f"object {flat[0]} is a mirror that is followed for {s.needs.max_depth} bounces"
+        yield Finding(s.scene.objects[flat[0]].line, f"{text} (more than {bounces:.0f})")
 
 
 def _encloses(s: Situation, index: int) -> bool:

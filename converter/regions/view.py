@@ -100,6 +100,14 @@ def _up_along_view(s: Situation, limit: float) -> Iterator[Finding]:
         yield Finding(0, f"the camera's up vector is {sine:.2g} from its view (less than {limit:.2g} radians)")
 
 
+def _short_view(s: Situation, limit: float) -> Iterator[Finding]:
+    """The difference of two large numbers says little of a direction."""
+    camera = s.scene.camera
+    share = math.dist(camera.eye, camera.look_at) / max(*map(abs, camera.eye), *map(abs, camera.look_at))
+    if share < limit:
+        yield Finding(0, f"the camera looks at a point {share:.2g} of its coordinates away (less than {limit:.2g})")
+
+
 def _near_surface(s: Situation, limit: float) -> Iterator[Finding]:
     """Surfaces that the eye is near; those that it lies on are known to the exact methods."""
     shares = _nearness(s)
@@ -137,14 +145,15 @@ def _lies_on(s: Situation, index: int) -> bool:
 
 
 REGIONS = (
-    Region(("grazing", "threads", "fovy"), {"float": 5e-8, "offset": 5e-8, "ulp": 5e-8}, _long_lens),
+    Region(("grazing", "threads", "fovy"), {"double": 3e-15, "float": 5e-8, "offset": 5e-8, "ulp": 5e-8}, _long_lens),
     Region(("threads", "mirror-corner"), {"mesh": 5e-8}, _long_lens_at_edges),
     Region(
-        ("mirror-corner", "critical-angle", "grazing-glass"), {"double": 1e-15, "float": 2e-6}, _long_lens_at_mirrors
+        ("mirror-corner", "critical-angle", "grazing-glass"), {"double": 3e-14, "float": 2e-6}, _long_lens_at_mirrors
     ),
     Region(("horizon",), {"mesh": 1e-3}, _horizon),
     Region(("fovy",), {"float": 3e-3, "mesh": 3e-3}, _wide_lens),
+    Region(("tie-along",), {"double": 1e-10}, _short_view),
     Region(("view-up",), {"float": 3e-5}, _up_along_view),
-    Region(("camera-height", "inside-glass"), {"float": 3e-8, "mesh": 3e-8}, _near_surface),
+    Region(("camera-height", "inside-glass"), {"double": 2e-15, "float": 3e-8, "mesh": 3e-8}, _near_surface),
     Region(("camera-height", "camera-on-floor", "camera-on-ball"), {"offset": 3e-8, "ulp": 3e-8}, _at_surface),
 )

@@ -183,7 +183,7 @@ def _following_methods() -> Iterator[Method]:
     def method(name: str, use: str, usual: bool = True, **changes: Any) -> Method:
         return Method(name, "native", "the native tracer, following more rays or fewer", use, {}, changes, usual=usual)
 
-    yield method("native-cutoff-0", "drops no ray for its weight: for figures, not for pictures", cutoff=0.0)
+    yield method("native-cutoff-0", "drops no ray for its weight, but may for its depth: for figures", cutoff=0.0)
     yield method("native-cutoff-4096", "drops rays below 1/4096: where dark parts will be brightened", cutoff=1 / 4096)
     yield method("native-cutoff-512", "drops rays below 1/512, hardly seen in 8 bits: the default", cutoff=1 / 512)
     yield method("native-cutoff-64", "drops rays below 1/64: a preview", cutoff=1 / 64)

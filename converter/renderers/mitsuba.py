@@ -58,6 +58,7 @@ class MitsubaRenderer:
                 "variant": variant,
                 "intersections": integrator.intersections,
                 "precision": integrator.precision,
+                "pixels_too_deep": integrator.pixels_too_deep,
             }
             return Rendering(pixels, settings.width, settings.height, seconds, statistics)
 

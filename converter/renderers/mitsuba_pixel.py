@@ -43,11 +43,11 @@ def trace_pixels(scene: Any, settings: Settings, pixels: Sequence[tuple[int, int
 class _Rays:
     """The numbers of rays, with their last axis the rays': those of a `Ray`, as it has them."""
 
-    columns: tuple[NDArray[Any], ...]  # o, d, object, record, inside, t_min
+    columns: tuple[NDArray[Any], ...]  # o, d, object, record, inside, t_min, spread
 
     @classmethod
     def of(cls, ray: Ray, count: int) -> "_Rays":
-        columns = (ray.o, ray.d, ray.object, ray.record, ray.inside, ray.t_min)
+        columns = (ray.o, ray.d, ray.object, ray.record, ray.inside, ray.t_min, ray.spread)
         return cls(tuple(np.broadcast_to(a, (*a.shape[:-1], count)) for a in map(np.array, columns)))
 
     def chosen(self, which: Sequence[int]) -> "_Rays":
@@ -59,9 +59,15 @@ class _Rays:
     def ray(self, types: Any) -> Ray:
         import mitsuba as mi
 
-        o, d, index, record, inside, t_min = map(np.ascontiguousarray, self.columns)
+        o, d, index, record, inside, t_min, spread = map(np.ascontiguousarray, self.columns)
         return Ray(
-            types.Point3(o), types.Vector3(d), mi.UInt32(index), mi.UInt32(record), mi.Bool(inside), types.Float(t_min)
+            types.Point3(o),
+            types.Vector3(d),
+            mi.UInt32(index),
+            mi.UInt32(record),
+            mi.Bool(inside),
+            types.Float(t_min),
+            types.Float(spread),
         )
 
     def __len__(self) -> int:
@@ -105,7 +111,7 @@ class _Tracer:
         dr.make_opaque(ray)
         hit = integrator.closest(ray, lanes(count))
         dr.make_opaque(hit)
-        finish, pigment = integrator.material(hit)
+        finish, pigment = integrator.material(ray, hit)
         dr.make_opaque(finish, pigment)
         through, total = integrator.transmitted(ray, hit, finish.eta)
         mirrored = integrator.reflected(ray, hit)
@@ -150,12 +156,12 @@ class _Tracer:
             }
             for kind, coefficient in (("reflected", kr[i]), ("transmitted", kt[i])):
                 weight = record["weight"] * coefficient
-                if coefficient == 0:
+                if weight == 0:
                     continue
-                if record["depth"] + 1 > self._max_depth:
-                    record["dropped"][kind] = "depth"
-                elif weight < self._cutoff:
+                if weight < self._cutoff:
                     record["dropped"][kind] = "cutoff"
+                elif record["depth"] + 1 > self._max_depth:
+                    record["dropped"][kind] = "depth"
                 else:
                     child = {"kind": kind, "weight": weight, "depth": record["depth"] + 1}
                     record["children"].append(child)

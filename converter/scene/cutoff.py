@@ -26,9 +26,10 @@ followed loses at most
 
     E(w, j) = max over finishes of  sum over k in {kr, kt} of  (w k B(D - j - 1) if w k < e, else E(w k, j + 1)),
 
-D being the depth limit with a cut-off of 0. Where the limit for e, which may be lower, ends a path before the cut-off
-does, what lies below is lost in the same way. Only weights that a product of coefficients can have are looked at; where
-these are very many, near ones are taken together, as intervals, each of which counts with its worse end.
+D being what `--max-depth` says, else the most bounces that are ever followed. Where the limit for e, which may be
+lower, ends a path before the cut-off does, what lies below is lost in the same way. Only weights that a product of
+coefficients can have are looked at; where these are very many, near ones are taken together, as intervals, each of
+which counts with its worse end.
 """
 
 import math
@@ -40,15 +41,18 @@ import numpy as np
 from numpy.typing import NDArray
 
 from converter.scene.attenuation import least_divisor
+from converter.scene.depth import MAX_DEPTH, depth_limit
 from converter.scene.model import Checker, Color, Pigment, Scene, Solid
-from converter.scene.needs import SceneNeeds, depth_limit, scene_needs
+from converter.scene.needs import SceneNeeds, scene_needs
 from converter.scene.settings import Settings
 
 Floats = NDArray[np.float64]
 Indices = NDArray[np.intp]
 
 MOST_WEIGHTS = 512
-"""Intervals of weights that are told apart at one depth."""
+"""Intervals of weights that are told apart at one depth, ..."""
+MOST_PRODUCTS = 1 << 22
+"""... fewer where there are so many products of them and the coefficients at all depths: it takes a second or two."""
 ROUNDING = 2.0**-20
 """Part of the brightest colour by which two pictures may differ because their pixels are rounded to single precision,
 and by which a highlight may exceed 1."""
@@ -87,7 +91,8 @@ def cutoff_bound(scene: Scene, settings: Settings) -> CutoffBound:
     needs = scene_needs(scene, settings)
     used = [scene.finishes[i] for i in needs.finishes]
     weights = np.array([(f.kr, f.kt) for f in used], dtype=np.float64).reshape(-1, 2)
-    full_depth = depth_limit(used, replace(settings, cutoff=0))
+    everything = replace(settings, cutoff=0, max_depth=MAX_DEPTH if settings.max_depth is None else settings.max_depth)
+    full_depth = depth_limit(used, everything).bounces
     with np.errstate(over="ignore", invalid="ignore"):  # numbers may be as large as they like
         dropped = _worst_loss(weights, settings.cutoff, needs.max_depth, np.ones(full_depth + 1))
         local, unbounded_by = _local_colors(scene, needs)
@@ -219,18 +224,19 @@ def _levels(coefficients: Floats, cutoff: float, depth: int) -> Iterator[_Level]
     least, most = np.minimum(coefficients, single), np.maximum(coefficients, single)
     low = high = np.ones(1)
     step = 2.0**-40  # equal but for rounding: the same coefficients in another order
+    count = min(MOST_WEIGHTS, max(MOST_PRODUCTS // (len(coefficients) * depth), 8)) if depth else 0
     for _ in range(depth):
         if not len(low):
             return
         lows, highs = np.outer(low, least), np.outer(high, most)
         followed = (highs >= cutoff) & (highs > 0)
         successor = np.full(followed.shape, -1)
-        low, high, successor[followed], step = _merged(np.maximum(lows[followed], cutoff), highs[followed], step)
+        low, high, successor[followed], step = _merged(np.maximum(lows[followed], cutoff), highs[followed], step, count)
         yield _Level(lows, highs, successor)
 
 
-def _merged(low: Floats, high: Floats, step: float) -> tuple[Floats, Floats, Indices, float]:
-    """Few intervals that hold the given ones, and for each of these the index of the one that it is in.
+def _merged(low: Floats, high: Floats, step: float, most: int) -> tuple[Floats, Floats, Indices, float]:
+    """At most so many intervals that hold the given ones, and for each of these the index of the one that it is in.
 
     They hold what lies between two multiples of `step` in log2 of `low`; a larger one is taken, and returned, if that
     leaves too many.
@@ -239,7 +245,7 @@ def _merged(low: Floats, high: Floats, step: float) -> tuple[Floats, Floats, Ind
     while True:
         _, index = np.unique(np.floor(logarithms / step), return_inverse=True)
         count = int(index.max(initial=-1)) + 1
-        if count <= MOST_WEIGHTS:
+        if count <= most:
             break
         step *= 2
     lows, highs = np.full(count, np.inf), np.zeros(count)

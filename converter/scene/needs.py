@@ -1,10 +1,10 @@
 """What a scene needs of a renderer, worked out once, so that neither renderer models more than that."""
 
-import math
 import sys
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
+from converter.scene.depth import DepthLimit, depth_limit, follows
 from converter.scene.model import Color, Finish, Polyhedron, Scene, Shape, Sphere, Vector
 from converter.scene.settings import IorReading, Settings
 
@@ -12,11 +12,6 @@ if TYPE_CHECKING:
     from collections.abc import Sequence
 
     from native_tracer.halfspaces import PolyhedronFacts
-
-MAX_DEPTH = 64
-"""Deepest default for scenes in which every ray has at most one successor."""
-MAX_DEPTH_BRANCHING = 16
-"""Deepest default where a finish both reflects and transmits, so that a ray may have two successors."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -30,7 +25,7 @@ class SceneNeeds:
         branches: a ray may be followed by both at once.
         lit: a surface has kd or ks > 0 and there is a light: shadow rays are needed.
         glossy: a lit surface has ks > 0: highlights are needed.
-        max_depth: bounces to follow after the primary ray.
+        depth: how many bounces to follow after the primary ray, and why.
         background: linear RGB of rays that hit nothing.
         planes: for each object the indices of the planes that have a face, ascending; for a sphere none, and all for a
             polyhedron that is neither a body nor a plate.
@@ -49,12 +44,17 @@ class SceneNeeds:
     branches: bool
     lit: bool
     glossy: bool
-    max_depth: int
+    depth: DepthLimit
     background: Color
     planes: tuple[tuple[int, ...], ...]
     plates: tuple[tuple[int, ...], ...]
     boxes: tuple[tuple[Vector, Vector], ...]
     bounded: tuple[bool, ...]
+
+    @property
+    def max_depth(self) -> int:
+        """Bounces to follow after the primary ray."""
+        return self.depth.bounces
 
     @property
     def bounces(self) -> bool:
@@ -66,13 +66,13 @@ def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
     """Work out what `scene`, drawn with `settings`, needs."""
     finishes = tuple(sorted({o.finish for o in scene.objects}))
     used = [scene.finishes[i] for i in finishes]
-    # A ray of the first bounce weighs kr or kt: below the cut-off it is never traced, so nothing needs it.
-    reflects = any(f.kr > 0 and f.kr >= settings.cutoff for f in used)
-    refracts = any(f.kt > 0 and f.kt >= settings.cutoff for f in used)
-    branches = any(min(f.kr, f.kt) > 0 and min(f.kr, f.kt) >= settings.cutoff for f in used)
+    largest = max((max(f.kr, f.kt) for f in used), default=0.0)
+    reflects = any(follows(f.kr, largest, settings.cutoff) for f in used)
+    refracts = any(follows(f.kt, largest, settings.cutoff) for f in used)
+    branches = any(follows(min(f.kr, f.kt), largest, settings.cutoff) for f in used)
     facts = _polyhedron_facts(scene)
-    max_depth = depth_limit(used, settings)
-    bounces = max_depth > 0
+    depth = depth_limit(used, settings)
+    bounces = depth.bounces > 0
     return SceneNeeds(
         pigments=tuple(sorted({o.pigment for o in scene.objects})),
         finishes=finishes,
@@ -82,7 +82,7 @@ def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
         branches=branches and bounces,
         lit=bool(scene.lights) and any(f.kd > 0 or f.ks > 0 for f in used),
         glossy=bool(scene.lights) and any(f.ks > 0 for f in used),
-        max_depth=max_depth,
+        depth=depth,
         background=scene.ambient if settings.background is None else settings.background,
         planes=tuple(_planes(o.shape, f) for o, f in zip(scene.objects, facts, strict=True)),
         plates=tuple(f.plate if f else () for f in facts),
@@ -112,23 +112,6 @@ def _polyhedron_facts(scene: Scene) -> "Sequence[PolyhedronFacts | None]":
     from converter.scene.geometry import scene_facts
 
     return scene_facts(scene)
-
-
-def depth_limit(finishes: list[Finish], settings: Settings) -> int:
-    """Bounces that are followed after a primary ray where objects have these finishes.
-
-    As many as the settings allow, or by default within the limits above, and no more than it takes until every weight
-    is below the cut-off: kernels keep room for so many.
-    """
-    largest = max((max(f.kr, f.kt) for f in finishes), default=0.0)
-    if largest == 0 or largest < settings.cutoff:
-        return 0
-    limit = settings.max_depth
-    if limit is None:
-        limit = MAX_DEPTH_BRANCHING if any(f.kr > 0 and f.kt > 0 for f in finishes) else MAX_DEPTH
-    if largest >= 1 or settings.cutoff == 0:
-        return limit
-    return min(limit, math.ceil(math.log(settings.cutoff) / math.log(largest)))
 
 
 def eta(finish: Finish, reading: IorReading) -> float:

@@ -29,8 +29,8 @@ MOST_PROBLEMS = 20
 BLOCK = 1 << 16
 LONGEST = 1 << 28
 """Bytes of a file: a pipe may never end."""
-LONGEST_BY_LINES = 1 << 24
-"""Characters up to which a second reading, by lines, takes no time that matters."""
+LONGEST_BY_LINES = 1 << 22
+"""Characters up to which a second reading, by lines, takes seconds at most."""
 
 
 def parse_scene(text: str | bytes, file: Path | None = None) -> Scene:
@@ -184,7 +184,7 @@ def _read(
     try:
         found = by_words(attempt)
     except Lost as lost:
-        failure = lost.with_traceback(None)  # which would keep what has been read
+        failure = lost.at, lost.message  # the error itself would keep all that has been read
     if by_lines and (found is None or not _starts_well(reader, found[1], following)):
         found = None  # so that there is room for as much once more
         second = reader.attempt()
@@ -203,7 +203,7 @@ def _read(
     reader.adopt(attempt)
     if found is None:
         assert failure
-        raise failure
+        raise Lost(*failure)
     return found
 
 

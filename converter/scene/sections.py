@@ -106,8 +106,10 @@ def read_by_count(reader: Reader, at: int, section: Section) -> tuple[list[Any],
         except Lost:
             if reader.has(at):
                 raise
-            raise Lost(head, miscounted(reader, head, section, len(found))) from None
+            break
         found.append(entry)
+    if len(found) < count:
+        raise Lost(head, miscounted(reader, head, section, len(found)))
     return found, at
 
 

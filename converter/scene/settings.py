@@ -21,7 +21,7 @@ class Settings:
         ior: read a finish's `ior` as n1/n2 up to 1 and as n2/n1 above ("auto"), or always as one of them.
         background: linear RGB for rays that hit nothing; None means the ambient light's colour.
         cutoff: a ray whose weight (the product of kr and kt so far) is below it is not traced.
-        max_depth: bounces after the primary ray; None means what the scene needs for the cut-off to act.
+        max_depth: bounces after the primary ray; None means as many as the cut-off asks for, within limits.
         samples: rays per pixel, a square number n * n laid out as a grid.
         seed: start of the random numbers of scenes that are sampled.
         threads: worker threads; 0 means one for each core.

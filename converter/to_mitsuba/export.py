@@ -17,7 +17,7 @@ ELEMENTS = {
     "hdrfilm": "film",
     "box": "rfilter",
     "stratified": "sampler",
-    "srgb": "texture",
+    "solid": "texture",
     "solid_checker": "texture",
     "projected_bitmap": "texture",
     "phong": "bsdf",

@@ -28,6 +28,8 @@ def integrator(
         "ambient": color(scene.ambient),
         "background": color(needs.background),
         "max_depth": needs.max_depth,
+        "waiting": needs.depth.waiting,
+        "depth_limited": needs.depth.acts,
         "cutoff": settings.cutoff,
         "reflection": needs.reflects,
         "refraction": needs.refracts,

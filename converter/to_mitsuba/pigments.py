@@ -8,15 +8,14 @@ from converter.to_mitsuba.lights import color
 
 
 def texture(pigment: Pigment) -> dict[str, Any]:
-    """An `srgb`, `solid_checker` or `projected_bitmap` texture; the latter's `data` is a `Texture` of ours.
+    """A `solid`, `solid_checker` or `projected_bitmap` texture; the latter's `data` is a `Texture` of ours.
 
     Raises:
         TextureError: the image of a texmap cannot be read.
 
     """
     if isinstance(pigment, Solid):
-        # Not "rgb", which takes no colour outside 0..1.
-        return {"type": "srgb", "color": color(pigment.color), "unbounded": True}
+        return {"type": "solid", "color": color(pigment.color)}
     if isinstance(pigment, Checker):
         return {
             "type": "solid_checker",

@@ -31,7 +31,7 @@ class AttenuatedPoint(mi.Emitter):
     def __init__(self, props):
         mi.Emitter.__init__(self, props)
         self.position = mi.Point3d(props["position"])
-        self.color = mi.Color3f(props["color"])
+        self.color = mi.Color3d(props["color"])
         self.attenuation = mi.Vector3d(props.get("attenuation", [1.0, 0.0, 0.0]))
         dr.make_opaque(self.position, self.color, self.attenuation)
         self.m_flags = mi.EmitterFlags.DeltaPosition
@@ -51,7 +51,7 @@ class AttenuatedPoint(mi.Emitter):
         ds.n = mi.Normal3f(-ds.d)
         a, b, c = mi.Vector3f(self.attenuation)
         # Without the cosine, which the BSDF applies.
-        irradiance = quotient(dr.pi * self.color, a + ds.dist * (b + ds.dist * c))
+        irradiance = quotient(dr.pi * mi.Color3f(self.color), a + ds.dist * (b + ds.dist * c))
         return ds, irradiance & active
 
     def eval_direction(self, it, ds, active=True):

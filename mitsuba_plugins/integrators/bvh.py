@@ -19,12 +19,13 @@ from mitsuba_plugins.integrators.exact import (
     ExactSurfaces,
     Records,
     narrow,
-    passage_distance,
+    passage_crossing,
     sphere_distance,
     whole_ray,
 )
 from mitsuba_plugins.integrators.geometry import Surface
-from mitsuba_plugins.integrators.rays import NOTHING, Ray, Real
+from mitsuba_plugins.integrators.rays import NOTHING, Ray, Real, largest
+from mitsuba_plugins.integrators.rounding import most_blur
 from native_tracer.bvh import threaded_bvh
 
 SLACK = 2.0**-20
@@ -49,21 +50,29 @@ class BvhSurfaces(ExactSurfaces):
         self._count = column(mi.UInt32, [len(surface.planes) for surface in surfaces])
         dr.make_opaque(self._node_count, self._scale)
 
-    def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any]:
-        """Distance (infinite for none), object (NOTHING for none) and record of the first hit."""
+    def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any, Any]:
+        """Distance (infinite for none), object (NOTHING for none) and record of the first hit, and whether it was close
+        to a tie.
+        """
         return self._search(ray, self._types.Float(dr.inf), None, active)
 
-    def find_blocker(self, ray: Ray, distance: Any, light: Any, active: Any) -> Any:
-        """Some object that the ray meets before it comes to a light at `distance`, or NOTHING."""
-        return self._search(ray, distance, light, active)[1]
+    def find_blocker(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any]:
+        """Some object that the ray meets before it comes to a light at `distance`, or NOTHING, and whether that was
+        close to a tie.
+        """
+        _, found, _, close = self._search(ray, distance, light, active)
+        return found, close
 
     @dr.syntax
-    def _search(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any, Any]:
+    def _search(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any, Any, Any]:
         """What is met first before `distance`; with a light there, anything that is in its way."""
         width = dr.width(ray.d)
         t_best = dr.zeros(self._types.Float, width) + distance
         object_best = dr.full(mi.UInt32, NOTHING, width)
         record_best = dr.zeros(mi.UInt32, width)
+        t_second = dr.full(self._types.Float, dr.inf, width)
+        close = dr.full(mi.Bool, False, width)
+        reach = largest(ray.o)
         farthest = mi.Float(t_best * self._scale) * (1 + SLACK)
         # The origin as a sum of two single-precision numbers, so that differences to it are wrong by a share of
         # themselves and no more.
@@ -80,12 +89,16 @@ class BvhSurfaces(ExactSurfaces):
         while searching:
             tested = searching & (index != NOTHING)
             if tested:
-                t, record = self._intersect(ray, index, tested)
+                t, record, near_tie = self._intersect(ray, index, tested, reach)
+                close |= tested & (near_tie | (t < most_blur(t) * reach))
                 # Of surfaces at the same distance the first counts.
                 ties = (t == t_best) & (object_best != NOTHING) & (index < object_best)
                 closer = tested & ((t < t_best) | ties)
                 if dr.hint(light is not None, mode="scalar"):
                     closer &= ~self.contacts.lies_at(light, record, ray.d, t, distance, closer)
+                if dr.hint(light is None, mode="scalar"):
+                    farther = dr.select(t < t_best, t_best, dr.select(t > t_best, t, dr.inf))
+                    t_second = dr.select(tested & (farther < t_second), farther, t_second)
                 t_best = dr.select(closer, t, t_best)
                 object_best = dr.select(closer, index, object_best)
                 record_best = dr.select(closer, record, record_best)
@@ -107,28 +120,38 @@ class BvhSurfaces(ExactSurfaces):
                 node = dr.select(meets & (item == NOTHING), node + 1, start + dr.reinterpret_array(mi.UInt32, rest.z))
                 walking &= (index == NOTHING) & (node < end)
             searching &= index != NOTHING
-        return t_best, object_best, record_best
+        if dr.hint(light is None, mode="scalar"):
+            near = most_blur(t_best) * (t_best + reach)
+            close |= (t_second - t_best <= near) | (t_best < near)
+        return t_best, object_best, record_best, close
 
-    def _intersect(self, ray: Ray, index: Any, active: Any) -> tuple[Any, Any]:
-        """Distance to one surface (infinite or NaN for none: compare with <) and the record that is met."""
+    def _intersect(self, ray: Ray, index: Any, active: Any, reach: Any) -> tuple[Any, Any, Any]:
+        """Distance to one surface (infinite or NaN for none: compare with <), the record that is met, and whether that
+        was close to a tie.
+        """
         own = ray.object == index
         first = dr.gather(mi.UInt32, self._first, index, active)
         if not self._any_polyhedron:
-            return self._intersect_sphere(ray, first, own, active), first
+            t, close = self._intersect_sphere(ray, first, own, active)
+            return t, first, close
         count = dr.gather(mi.UInt32, self._count, index, active)
-        t, record = self._intersect_planes(ray, first, count, own, active & (count > 0))
+        t, record, close = self._intersect_planes(ray, first, count, own, active & (count > 0), reach)
         if self._any_sphere:
             sphere = count == 0
-            t = dr.select(sphere, self._intersect_sphere(ray, first, own, active & sphere), t)
+            t_sphere, touches = self._intersect_sphere(ray, first, own, active & sphere)
+            t = dr.select(sphere, t_sphere, t)
             record = dr.select(sphere, first, record)
-        return t, record
+            close = dr.select(sphere, touches, close)
+        return t, record, close
 
-    def _intersect_sphere(self, ray: Ray, first: Any, own: Any, active: Any) -> Any:
+    def _intersect_sphere(self, ray: Ray, first: Any, own: Any, active: Any) -> tuple[Any, Any]:
         row = self.records.row(first, active)
         return sphere_distance(self._types.Point3(row.xyz), row.w, ray, own)
 
     @dr.syntax
-    def _intersect_planes(self, ray: Ray, first: Any, count: Any, own: Any, active: Any) -> tuple[Any, Any]:
+    def _intersect_planes(
+        self, ray: Ray, first: Any, count: Any, own: Any, active: Any, reach: Any
+    ) -> tuple[Any, Any, Any]:
         passage = whole_ray(self._types, dr.width(ray.d))
         record = mi.UInt32(first)
         end = first + count
@@ -136,7 +159,7 @@ class BvhSurfaces(ExactSurfaces):
             row = self.records.row(record, active)
             passage = narrow(passage, ray, self._types.Vector3(row.xyz), row.w, record)
             record += 1
-        return passage_distance(passage, ray, own)
+        return passage_crossing(passage, ray, own, reach)
 
 
 def _octant(d: Any) -> Any:

@@ -117,7 +117,8 @@ class EyeContact:
         found = [contact for contact in contacts.of(eye) if contacts.is_on_body(eye, contact)]
         self._contacts = [contact for contact in found if contact.object == found[0].object]
         self._normals = [types.Vector3(*contact.normal) for contact in self._contacts]
-        dr.make_opaque(self._normals)
+        self._curvature = types.Float(sum(1 / contact.radius for contact in self._contacts if contact.radius > 0))
+        dr.make_opaque(self._normals, self._curvature)
 
     def start(self, ray: Ray) -> Ray:
         """A ray from the eye, with what it starts on."""
@@ -125,8 +126,10 @@ class EyeContact:
             return ray
         contact = self._contacts[0]
         leads_inside = mi.Bool(True)
+        # Rays along a plane, too, for a body is closed; not those that touch a sphere. Eye and directions may be off.
+        bound = ray.spread if contact.radius == 0 else -(ray.spread + ray.t_min * self._curvature)
         for normal in self._normals:
-            leads_inside &= dr.dot(normal, ray.d) < 0
+            leads_inside &= dr.dot(normal, ray.d) < bound
         width = dr.width(ray.d)
         index, record = (dr.opaque(mi.UInt32, number, width) for number in (contact.object, contact.record))
-        return Ray(ray.o, ray.d, index, record, leads_inside, ray.t_min)
+        return Ray(ray.o, ray.d, index, record, leads_inside, ray.t_min, ray.spread)

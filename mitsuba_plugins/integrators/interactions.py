@@ -34,11 +34,11 @@ class MitsubaSurfaces:
         flags = mi.RayFlags.Minimal | mi.RayFlags.ShadingFrame
         si = found.compute_surface_interaction(probe, +flags, valid)
         n = mi.Vector3f(si.sh_frame.n)
-        return Hit(valid, si.t, dr.select(valid, index, NOTHING), record, si.p, n, dr.dot(n, ray.d) > 0)
+        return Hit(valid, si.t, dr.select(valid, index, NOTHING), record, si.p, n, dr.dot(n, ray.d) > 0, mi.Float(0))
 
-    def spawn(self, hit: Hit, d: Any, inside: Any) -> Ray:
+    def spawn(self, hit: Hit, d: Any, inside: Any, spread: Any) -> Ray:
         """The ray that leaves `hit` in direction `d`."""
-        return Ray(self._offset(hit, d), d, hit.object, hit.record, inside, mi.Float(0))
+        return Ray(self._offset(hit, d), d, hit.object, hit.record, inside, mi.Float(0), spread)
 
     def blocker(self, hit: Hit, d: Any, distance: Any, light: Any, active: Any) -> Any:
         """The first object between `hit` and a light at `distance` in direction `d`, or NOTHING."""

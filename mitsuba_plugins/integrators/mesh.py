@@ -39,14 +39,14 @@ class MeshSurfaces(ExactSurfaces):
         self._deviation = column(types.Float, [surface.deviation for surface in surfaces])
         self._extent = column(types.Float, [_extent(surface) for surface in surfaces])
 
-    def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any]:
-        """Distance (infinite for none), object (NOTHING for none) and record of the first hit."""
-        return self._search(ray, self._types.Float(dr.inf), None, active)
+    def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any, Any]:
+        """Distance (infinite for none), object (NOTHING for none) and record of the first hit. Looks for no ties."""
+        return *self._search(ray, self._types.Float(dr.inf), None, active), None
 
-    def find_blocker(self, ray: Ray, distance: Any, light: Any, active: Any) -> Any:
+    def find_blocker(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any]:
         """The first object that the ray meets before it comes to a light at `distance`, or NOTHING."""
         # Not Scene.ray_test, which is less careful with distant spheres than ray_intersect_preliminary.
-        return self._search(ray, distance, light, active)[1]
+        return self._search(ray, distance, light, active)[1], None
 
     @dr.syntax
     def _search(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any, Any]:
@@ -88,7 +88,7 @@ class MeshSurfaces(ExactSurfaces):
         t_plane = -quotient(dr.dot(v, ray.o) + w, dr.dot(v, ray.d))
         t_own = dr.select(ray.inside & (ray.record != record), dr.maximum(t_plane, 0), dr.inf)
         t_plane = dr.select(own, t_own, dr.select(t_plane > ray.t_min, t_plane, dr.inf))
-        return dr.select(sphere, sphere_distance(self._types.Point3(v), w, ray, own), t_plane)
+        return dr.select(sphere, sphere_distance(self._types.Point3(v), w, ray, own)[0], t_plane)
 
     def _start(self, ray: Ray, active: Any) -> Any:
         """Origin for the single-precision ray, off the surface that `ray` starts on, on the side it travels on."""

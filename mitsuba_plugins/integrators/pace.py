@@ -18,9 +18,11 @@ GROWTH = 8
 LEAST = 1 << 16
 """Primary rays of a launch, however long they take. Fewer take hardly less time, ..."""
 LEAST_BRANCHING = 1 << 10
-"""... but where rays branch, for a tree may have 2^17 of them."""
+"""... but where rays branch, for a tree may have 2^16 of them."""
 FIRST = {False: 1 << 19, True: 1 << 22}
 """Primary rays of the first launch, on a CPU and on a GPU; where rays branch it has the least."""
+SHALLOW = 64
+"""Bounces. Where every ray may take more, the least and the first launch have fewer rays in proportion."""
 MOST_PIXELS = {False: 1 << 20, True: 1 << 25}
 """Of a band, likewise: memory grows with them and not with the number of samples."""
 MOST = 1 << 28
@@ -30,10 +32,11 @@ MOST = 1 << 28
 class Pace:
     """Sizes of bands and launches that follow how fast the picture is drawn."""
 
-    def __init__(self, branching: bool) -> None:
+    def __init__(self, branching: bool, max_depth: int) -> None:
         on_gpu = dr.backend_v(mi.Float) == dr.JitBackend.CUDA
-        self._least = LEAST_BRANCHING if branching else LEAST
-        self._rays = LEAST_BRANCHING if branching else FIRST[on_gpu]
+        share = min(1.0, SHALLOW / max(max_depth, 1))
+        self._least = LEAST_BRANCHING if branching else int(share * LEAST)
+        self._rays = LEAST_BRANCHING if branching else int(share * FIRST[on_gpu])
         self._most_pixels = MOST_PIXELS[on_gpu]
 
     def rows(self, width: int) -> int:

@@ -15,6 +15,7 @@ import drjit as dr
 import mitsuba as mi
 
 from mitsuba_plugins.arithmetic import quotient
+from mitsuba_plugins.integrators.rounding import epsilon, least_spread, most_blur
 
 NOTHING = 0xFFFFFFFF
 """Object index of a ray that starts on no surface, and of a hit that is none."""
@@ -31,13 +32,14 @@ class Real:
     Point3: Any
     Vector3: Any
     Vector4: Any
+    Color3: Any
 
 
 def real(precision: str) -> Real:
     """The types of "double" or of single precision, "float"."""
     if precision == "double":
-        return Real(mi.Float64, mi.Point3d, mi.Vector3d, mi.Vector4d)
-    return Real(mi.Float, mi.Point3f, mi.Vector3f, mi.Vector4f)
+        return Real(mi.Float64, mi.Point3d, mi.Vector3d, mi.Vector4d, mi.Color3d)
+    return Real(mi.Float, mi.Point3f, mi.Vector3f, mi.Vector4f, mi.Color3f)
 
 
 @dataclass
@@ -49,7 +51,8 @@ class Ray:
     object: Any  # UInt32, NOTHING for a primary ray, as is `record`
     record: Any  # UInt32, the record of the sphere or plane that o lies on, see `exact`
     inside: Any  # Bool, whether the ray travels inside `object`
-    t_min: Any  # Float
+    t_min: Any  # Float, how far o may be off; a hit on anything but `object` is farther
+    spread: Any  # Float, how far d may be off, see `rounding`
 
 
 @dataclass
@@ -63,6 +66,7 @@ class Hit:
     p: Any  # Point3
     n: Any  # Vector3, outward
     inside: Any  # Bool, whether the ray came from inside the object
+    lean: Any  # Float, how far n may be off
 
 
 def ray_reach(ray: Ray) -> Any:
@@ -70,8 +74,11 @@ def ray_reach(ray: Ray) -> Any:
     return quotient(ray.t_min, ERROR_BOUND * dr.epsilon(ray.t_min))
 
 
-def start_ray(types: Real, o: Any, d: Any) -> Ray:
-    """A ray that starts on no surface, at full width, as Dr.Jit's loops and local buffers want it."""
+def start_ray(types: Real, o: Any, d: Any, error: Any = 0, spread: Any = 0) -> Ray:
+    """A ray that starts on no surface, at full width, as Dr.Jit's loops and local buffers want it.
+
+    Its origin may be off by `error`, and its direction by `spread` besides its roundings.
+    """
     width = dr.width(d)
     return Ray(
         o=types.Point3(o) + dr.zeros(types.Point3, width),
@@ -79,7 +86,8 @@ def start_ray(types: Real, o: Any, d: Any) -> Ray:
         object=dr.full(mi.UInt32, NOTHING, width),
         record=dr.full(mi.UInt32, NOTHING, width),
         inside=dr.full(mi.Bool, False, width),
-        t_min=dr.zeros(types.Float, width),
+        t_min=dr.zeros(types.Float, width) + error,
+        spread=dr.full(types.Float, least_spread(types.Float), width) + spread,
     )
 
 
@@ -93,10 +101,15 @@ def lanes(width: int) -> Any:
     return dr.arange(mi.UInt32, width) < dr.opaque(mi.UInt32, width)
 
 
-def spawn(hit: Hit, d: Any, inside: Any) -> Ray:
-    """The ray that leaves `hit` in direction `d`, on the given side of the object."""
-    reach = largest(hit.p) + hit.t
-    return Ray(hit.p, d, hit.object, hit.record, inside, reach * (ERROR_BOUND * dr.epsilon(reach)))
+def spawn(hit: Hit, d: Any, inside: Any, spread: Any) -> Ray:
+    """The ray that leaves `hit` in direction `d`, which may be off by `spread`, on the given side of the object."""
+    return Ray(hit.p, d, hit.object, hit.record, inside, origin_error(hit.p, hit.t), spread)
+
+
+def origin_error(p: Any, t: Any) -> Any:
+    """A bound of the rounding error of a point that was found at distance `t` of its ray."""
+    reach = largest(p) + t
+    return reach * (ERROR_BOUND * dr.epsilon(reach))
 
 
 def largest(p: Any) -> Any:
@@ -114,18 +127,36 @@ def reflect(d: Any, n: Any) -> Any:
     return unit(d - n * (2 * dr.dot(d, n)))
 
 
-def refract(d: Any, n: Any, eta: Any) -> tuple[Any, Any]:
-    """Snell's law: direction behind a surface whose unit normal `n` is against `d`, and whether reflection is total.
+def shadow_spread(hit: Hit, distance: Any) -> Any:
+    """How far the direction to a light may be off: it leads there from wherever the point really is."""
+    turn = quotient(origin_error(hit.p, hit.t), distance)
+    return dr.minimum(least_spread(distance) + turn, most_blur(distance))
 
-    `eta` is the index on d's side over the index behind. Past the critical angle the direction is the mirrored one.
+
+def mirrored_spread(ray: Ray, hit: Hit) -> Any:
+    """How far the direction of a mirrored ray may be off."""
+    return dr.minimum(ray.spread + 2 * hit.lean + least_spread(ray.spread), most_blur(ray.spread))
+
+
+def refract(d: Any, n: Any, eta: Any, error: Any = 0) -> tuple[Any, Any, Any]:
+    """Snell's law: direction behind a surface whose unit normal `n` is against `d`, whether reflection is total, and
+    how far the direction may be off where it is not.
+
+    `eta` is the index on d's side over the index behind; direction and normal together may be off by `error`. Past the
+    critical angle the direction is the mirrored one; at that angle the ray is refracted along the surface.
     """
     cosine = -dr.dot(d, n)
     # 1 - eta^2 (1 - cosine^2), without the difference of nearly equal numbers where eta is nearly 1.
     cosine2 = (1 - eta) * (1 + eta) + dr.square(eta * cosine)
+    rounding = 4 * epsilon(cosine)
+    critical = eta * eta * (2 * cosine * error + rounding) + rounding
+    cosine2 = dr.select(dr.abs(cosine2) <= critical, 0, cosine2)
     through = d * eta + n * (eta * cosine - dr.sqrt(dr.maximum(cosine2, 0)))
     length = dr.norm(through)
     total = ~((cosine2 >= 0) & (length > 0))  # of a ratio beyond all measure these may be no numbers, or 0
-    return dr.select(total, reflect(d, n), through * quotient(1, length)), total
+    # In the plane of incidence it is more near the critical angle; across it, it is not.
+    spread = dr.minimum(2 * error * (1 + eta) + least_spread(cosine), most_blur(cosine))
+    return dr.select(total, reflect(d, n), through * quotient(1, length)), total, spread
 
 
 def power(base: Any, exponent: Any) -> Any:

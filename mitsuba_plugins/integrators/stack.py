@@ -11,27 +11,28 @@ from mitsuba_plugins.integrators.rays import Ray, Real
 class RayStack:
     """Rays that wait for their turn, with their weights and depths: one small buffer for each of their numbers.
 
-    Small, since Dr.Jit 1.5 may crash with buffers of more than 128 bytes: 16 doubles, the deepest default of a tree.
+    Small, since Dr.Jit 1.5 may crash with buffers of more than 128 bytes: 16 doubles. Fewer wait than the logarithm, to
+    base 2, of the rays of a pixel: 15, unless a user asks for a greater depth than the default.
     Indices and masks have full width: an index of width 1 would make all SIMD lanes use one slot.
     """
 
     def __init__(self, types: Real, size: int) -> None:
         self._types = types
         number, integer = types.Float, mi.UInt32
-        kinds = [number] * 7 + [integer] * 3 + [number, integer]
+        kinds = [number] * 8 + [integer] * 3 + [number, integer]
         self._buffers = [dr.alloc_local(kind, size, value=kind(0)) for kind in kinds] if size else []
 
     def write(self, slot: Any, ray: Ray, weight: Any, depth: Any, active: Any) -> None:
         """Put a ray at `slot`."""
         inside = dr.select(ray.inside, mi.UInt32(1), 0)
-        numbers = [*ray.o, *ray.d, ray.t_min, ray.object, ray.record, inside, weight, depth]
+        numbers = [*ray.o, *ray.d, ray.t_min, ray.spread, ray.object, ray.record, inside, weight, depth]
         for buffer, number in zip(self._buffers, numbers, strict=True):
             buffer.write(number, slot, active)
 
     def read(self, slot: Any, active: Any) -> tuple[Ray, Any, Any]:
         """The ray, weight and depth at `slot`."""
-        ox, oy, oz, dx, dy, dz, t_min, index, record, inside, weight, depth = (
+        ox, oy, oz, dx, dy, dz, t_min, spread, index, record, inside, weight, depth = (
             buffer.read(slot, active) for buffer in self._buffers
         )
         o, d = self._types.Point3(ox, oy, oz), self._types.Vector3(dx, dy, dz)
-        return Ray(o, d, index, record, inside == 1, t_min), weight, depth
+        return Ray(o, d, index, record, inside == 1, t_min, spread), weight, depth

@@ -18,7 +18,7 @@ from mitsuba_plugins.integrators.rays import Real
 
 @dataclass
 class Finish:
-    """A finish's coefficients: Float where they weigh light, of the rays' precision where they decide about those."""
+    """A finish's coefficients (Float of the rays' precision)."""
 
     ka: Any
     kd: Any
@@ -31,7 +31,7 @@ class Finish:
 
 @dataclass
 class Illumination:
-    """What a light adds at a hit: n . l, the attenuation, the object in its way or NOTHING, the two terms (Color3f)."""
+    """What a light adds at a hit: n . l, the attenuation, the object in its way or NOTHING, the two terms (Color3)."""
 
     cosine: Any
     attenuation: Any
@@ -53,35 +53,38 @@ class Materials:
         self._finish = column(mi.UInt32, [finish_row[id(bsdf)] for bsdf in bsdfs])
         self._texture = column(mi.UInt32, [texture_row[id(bsdf.pigment)] for bsdf in bsdfs])
         self._colors = [_color_function(texture) for texture in textures.values()]
+        self.has_edges = any(hasattr(t, "color_at") and t.is_spatially_varying() for t in textures.values())
+        """Whether a pigment's colour changes from one point to the next, so that it matters how far points are off."""
         zero, rows = mi.Float64(0), finishes.values()
-        self._weights = mi.Float(dr.concat([n for f in rows for n in (f.ka, f.kd, f.ks, zero)] or [zero] * 4))
-        self._exact = types.Float(dr.concat([n for f in rows for n in (f.kr, f.kt, f.eta, f.alpha)] or [zero] * 4))
-        dr.make_opaque(self._weights, self._exact)
+        numbers = [n for f in rows for n in (f.ka, f.kd, f.ks, f.alpha, f.kr, f.kt, f.eta, zero)]
+        self._numbers = types.Float(dr.concat(numbers or [zero] * 8))
+        dr.make_opaque(self._numbers)
 
     def finish(self, index: Any, active: Any) -> Finish:
         """The finish of an object."""
         row = dr.gather(mi.UInt32, self._finish, index, active)
-        ka, kd, ks, _ = dr.gather(mi.Vector4f, self._weights, row, active)
-        kr, kt, eta, alpha = dr.gather(self._types.Vector4, self._exact, row, active)
+        ka, kd, ks, alpha = dr.gather(self._types.Vector4, self._numbers, 2 * row, active)
+        kr, kt, eta, _ = dr.gather(self._types.Vector4, self._numbers, 2 * row + 1, active)
         return Finish(ka, kd, ks, alpha, kr, kt, eta)
 
-    def color(self, index: Any, p: Any, active: Any) -> Any:
-        """An object's pigment (Color3f) at a position (Point3)."""
+    def color(self, index: Any, p: Any, errors: Any, active: Any) -> Any:
+        """An object's pigment (Color3) at a position (Point3), whose coordinates may be off by `errors` (Vector3)."""
         if not self._colors:
-            return mi.Color3f(0)
+            return self._types.Color3(0)
         if len(self._colors) == 1:
-            return self._colors[0](p)
-        return dr.switch(dr.gather(mi.UInt32, self._texture, index, active), self._colors, p)
+            return self._types.Color3(self._colors[0](p, errors))
+        texture = dr.gather(mi.UInt32, self._texture, index, active)
+        return self._types.Color3(dr.switch(texture, self._colors, p, errors))
 
 
 def _color_function(texture: Any) -> Any:
     if hasattr(texture, "color_at"):
         return texture.color_at
 
-    def color_at(p: Any) -> Any:
+    def color_at(p: Any, _: Any) -> Any:
         si = dr.zeros(mi.SurfaceInteraction3f)
         si.p = mi.Point3f(p)
-        return texture.eval(si)
+        return mi.Color3d(texture.eval(si))
 
     return color_at
 
@@ -102,13 +105,13 @@ class Lights:
             places = [n for e in emitters for n in (*e.position, zero, *e.attenuation, zero)]
             exact = dr.concat(places)
             self._places = types.Float(exact)
-            self._colors = dr.concat([n for e in emitters for n in (*e.color, mi.Float(0))])
+            self._colors = types.Float(dr.concat([n for e in emitters for n in (*e.color, zero)]))
             dr.make_opaque(self._places, self._colors)
             self.positions = np.array(dr.detach(exact)).reshape(-1, 8)[:, :3]
 
     def get(self, light: Any, active: Any) -> tuple[Any, Any, Any]:
-        """Position (Point3), colour (Color3f) and attenuation (Vector3) of a light, by its index."""
+        """Position (Point3), colour (Color3) and attenuation (Vector3) of a light, by its index."""
         position = dr.gather(self._types.Vector4, self._places, 2 * light, active)
         attenuation = dr.gather(self._types.Vector4, self._places, 2 * light + 1, active)
-        color = dr.gather(mi.Vector4f, self._colors, light, active)
-        return self._types.Point3(position.xyz), mi.Color3f(color.xyz), self._types.Vector3(attenuation.xyz)
+        color = dr.gather(self._types.Vector4, self._colors, light, active)
+        return self._types.Point3(position.xyz), self._types.Color3(color.xyz), self._types.Vector3(attenuation.xyz)

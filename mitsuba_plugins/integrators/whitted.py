@@ -1,4 +1,4 @@
-"""Recursive ray tracing after Whitted, with the course's shading model, in double precision where it matters."""
+"""Recursive ray tracing after Whitted, with the course's shading model, in double precision."""
 
 import math
 from contextlib import contextmanager
@@ -18,7 +18,27 @@ from mitsuba_plugins.integrators.geometry import parse_geometry
 from mitsuba_plugins.integrators.interactions import MitsubaSurfaces
 from mitsuba_plugins.integrators.mesh import MeshSurfaces
 from mitsuba_plugins.integrators.pace import Pace
-from mitsuba_plugins.integrators.rays import NOTHING, Hit, Ray, lanes, power, real, reflect, refract, start_ray, unit
+from mitsuba_plugins.integrators.rays import (
+    NOTHING,
+    Hit,
+    Ray,
+    lanes,
+    largest,
+    mirrored_spread,
+    power,
+    real,
+    reflect,
+    refract,
+    start_ray,
+    unit,
+)
+from mitsuba_plugins.integrators.rounding import (
+    camera_errors,
+    coordinate_errors,
+    epsilon,
+    least_spread,
+    most_blur,
+)
 from mitsuba_plugins.integrators.stack import RayStack
 from mitsuba_plugins.integrators.tables import Finish, Illumination, Lights, Materials
 
@@ -52,6 +72,16 @@ class Whitted(mi.SamplingIntegrator):
      * - max_depth
        - |int|
        - Bounces after the primary ray (Default: 16)
+
+     * - waiting
+       - |int|
+       - Most rays of a tree that wait at once, if of two the one with the smaller kr or kt is followed first
+         (Default: max_depth)
+
+     * - depth_limited
+       - |bool|
+       - Count the pixels in which max_depth drops rays that the cutoff would keep, as ``pixels_too_deep``
+         (Default: false)
 
      * - cutoff
        - |float|
@@ -99,8 +129,8 @@ class Whitted(mi.SamplingIntegrator):
                 text = file.read()
         self._geometry = parse_geometry(text)
         self._bsdfs = Bsdfs(_materials(props, self.surfaces))
-        self.ambient = mi.Color3f(props.get("ambient", mi.ScalarColor3d(0.0)))
-        self.background = mi.Color3f(props.get("background", mi.ScalarColor3d(0.0)))
+        self.ambient = mi.Color3d(props.get("ambient", mi.ScalarColor3d(0.0)))
+        self.background = mi.Color3d(props.get("background", mi.ScalarColor3d(0.0)))
         self.max_depth = mi.UInt32(props.get("max_depth", 16))
         self.intersections = props.get("intersections", "auto")
         if self.intersections not in (*INTERSECTIONS, "auto"):
@@ -121,7 +151,9 @@ class Whitted(mi.SamplingIntegrator):
         self.branching = props.get("branching", True) and self.reflection and self.refraction
         self.shadows = props.get("shadows", True)
         self.highlights = props.get("highlights", True)
-        self.stack_size = max(1, props.get("max_depth", 16))
+        self.stack_size = max(1, props.get("waiting", props.get("max_depth", 16)))
+        self.depth_limited = props.get("depth_limited", False)
+        self.pixels_too_deep = 0
         self._tracer: Any = None
         self._eye_contact: EyeContact | None = None
 
@@ -148,6 +180,7 @@ class Whitted(mi.SamplingIntegrator):
         contacts = Contacts(self.surfaces)
         self._light_contacts = LightContacts(self.types, contacts, self._lights.positions)
         self._eye_contact = EyeContact(self.types, contacts, np.ravel(sensor.eye)) if hasattr(sensor, "eye") else None
+        self._errors_of_primary_rays = camera_errors(self.types, sensor)
         if self.intersections == "analytic":
             self._tracer = AnalyticSurfaces(self.types, self.surfaces, records, self._light_contacts)
         elif self.intersections == "bvh":
@@ -167,10 +200,16 @@ class Whitted(mi.SamplingIntegrator):
         """The first surface that a ray meets."""
         return self._tracer.closest(ray, active)
 
-    def material(self, hit: Hit):
+    def material(self, ray: Ray, hit: Hit):
         """The finish and the pigment's colour at a hit."""
         finish = self._materials.finish(hit.object, hit.valid)
-        return finish, self._materials.color(hit.object, hit.p, hit.valid)
+        return finish, self._materials.color(hit.object, hit.p, self._errors(ray, hit), hit.valid)
+
+    def _errors(self, ray: Ray, hit: Hit):
+        """How far the coordinates of a hit may be off, where a pigment asks."""
+        if not self._materials.has_edges or self.intersections in ("offset", "ulp"):
+            return self.types.Vector3(0)
+        return coordinate_errors(hit.p, hit.n, ray.d, hit.t, self._tracer.error(ray, hit))
 
     def light(self, index, ray: Ray, hit: Hit, finish: Finish, color, active) -> Illumination:
         """What one light, by its index, adds at a hit."""
@@ -180,67 +219,81 @@ class Whitted(mi.SamplingIntegrator):
         to_light = to_light * quotient(1, distance)
         n = dr.select(hit.inside, -hit.n, hit.n)
         cosine = dr.dot(n, to_light)
-        facing = active & (cosine > 0) & ~self._light_contacts.grazes(index, hit.record, active)
+        # A surface is not lit along itself, nor by a light at the very point.
+        apart = distance > 8 * epsilon(distance) * (largest(hit.p) + hit.t)
+        facing = (
+            active & (cosine > least_spread(cosine)) & apart & ~self._light_contacts.grazes(index, hit.record, active)
+        )
         blocker = self._tracer.blocker(hit, to_light, distance, index, facing)
         attenuation = a + distance * (b + distance * c)
         # Masked at the end: a light at the hit itself has no direction, and nothing times no number is no number.
         lit = facing & (blocker == NOTHING)
-        irradiance = quotient(emission, mi.Float(attenuation))
-        diffuse = (irradiance * color * (finish.kd * mi.Float(cosine))) & lit
-        specular = mi.Color3f(0)
+        intensity = emission * quotient(1, attenuation)
+        diffuse = (finish.kd * cosine * color * intensity) & lit
+        specular = self.types.Color3(0)
         if self.highlights:
-            specular = (irradiance * (finish.ks * self._highlight(ray, n, to_light, finish.alpha))) & lit
+            specular = (finish.ks * self._highlight(ray, n, to_light, finish.alpha) * intensity) & lit
         return Illumination(cosine, attenuation, blocker, diffuse, specular)
 
     def _highlight(self, ray: Ray, n, to_light, alpha):
         cosine = dr.dot(n, unit(to_light - ray.d)) if self._materials.blinn else dr.dot(reflect(ray.d, n), to_light)
-        return mi.Float(power(dr.minimum(dr.maximum(cosine, 0), 1), alpha))  # what is rounded above 1 has no bounds
+        return power(dr.minimum(dr.maximum(cosine, 0), 1), alpha)  # what is rounded above 1 has no bounds
 
     def reflected(self, ray: Ray, hit: Hit) -> Ray:
         """The mirrored ray."""
-        return self._tracer.spawn(hit, reflect(ray.d, hit.n), hit.inside)
+        return self._tracer.spawn(hit, reflect(ray.d, hit.n), hit.inside, mirrored_spread(ray, hit))
 
     def transmitted(self, ray: Ray, hit: Hit, eta) -> tuple[Ray, Any]:
         """The refracted ray, or the mirrored one past the critical angle, and whether it is past."""
         eta = dr.select(hit.inside, quotient(1, eta), eta)
         n = dr.select(hit.inside, -hit.n, hit.n)
-        d, total = refract(ray.d, n, eta)
-        return self._tracer.spawn(hit, d, hit.inside == total), total
+        d, total, spread = refract(ray.d, n, eta, dr.minimum(ray.spread + hit.lean, most_blur(ray.spread)))
+        spread = dr.select(total, mirrored_spread(ray, hit), spread)
+        return self._tracer.spawn(hit, d, hit.inside == total, spread), total
 
     # ------------------------------------------------------------------ the ray tree
 
     @dr.syntax
     def trace(self, ray: Ray, active):
-        """Radiance (Color3f) along rays: the whole tree below each, in one kernel.
+        """Radiance (Color3) along rays: the whole tree below each, in one kernel; and, if `depth_limited`, whether
+        the limit dropped a ray that the cut-off would have kept, else False.
 
-        Where a surface sends on two rays, the refracted one waits on a stack in local memory.
+        Where a surface sends on two rays, the heavier one waits on a stack in local memory.
         """
         # Everything starts at full width: with an index of width 1, all SIMD lanes would share one stack.
         width = dr.width(ray.d)
-        radiance = dr.zeros(mi.Color3f, width)
+        radiance = dr.zeros(self.types.Color3, width)
         weight = dr.full(self.types.Float, 1, width)
         depth = dr.zeros(mi.UInt32, width)
         active = active & lanes(width)
+        too_deep = dr.zeros(mi.Bool, width) if self.depth_limited else False
         waiting = dr.zeros(mi.UInt32, width)
         stack = RayStack(self.types, self.stack_size if self.branching else 0)
         while active:
             hit = self.closest(ray, active)
-            finish, color = self.material(hit)
+            finish, color = self.material(ray, hit)
             local = self._local_radiance(ray, hit, finish, color)
-            radiance += mi.Float(weight) * dr.select(hit.valid, local, self.background)
+            radiance += weight * dr.select(hit.valid, local, self.types.Color3(self.background))
 
             depth += 1
             follows = hit.valid & (depth <= self.max_depth)
             mirror_weight, mirrors = self._successor_weight(self.reflection, weight * finish.kr, follows)
             through_weight, refracts = self._successor_weight(self.refraction, weight * finish.kt, follows)
+            if dr.hint(self.depth_limited, mode="scalar"):
+                heavier = weight * dr.maximum(finish.kr, finish.kt)
+                too_deep |= hit.valid & (depth > self.max_depth) & (heavier > 0) & (heavier >= self.cutoff)
             active = mirrors | refracts
-            weight = dr.select(mirrors, mirror_weight, through_weight)
             if dr.hint(self.branching, mode="scalar"):
-                through = self.transmitted(ray, hit, finish.eta)[0]
+                through, mirrored = self.transmitted(ray, hit, finish.eta)[0], self.reflected(ray, hit)
                 pushes = mirrors & refracts
-                stack.write(waiting, through, through_weight, depth, pushes)
+                # The lighter one first, which has the smaller tree below it: so few rays wait.
+                mirrors_first = mirrors & ~(refracts & (finish.kt < finish.kr))
+                later = dr.select(mirrors_first, through, mirrored)
+                later_weight = dr.select(mirrors_first, through_weight, mirror_weight)
+                stack.write(waiting, later, later_weight, depth, pushes)
                 waiting += dr.select(pushes, mi.UInt32(1), 0)
-                ray = dr.select(mirrors, self.reflected(ray, hit), through)
+                ray = dr.select(mirrors_first, mirrored, through)
+                weight = dr.select(mirrors_first, mirror_weight, through_weight)
                 resumes = ~active & (waiting > 0)
                 waiting -= dr.select(resumes, mi.UInt32(1), 0)
                 waiting_ray, waiting_weight, waiting_depth = stack.read(waiting, resumes)
@@ -249,12 +302,15 @@ class Whitted(mi.SamplingIntegrator):
                 depth = dr.select(resumes, waiting_depth, depth)
                 active |= resumes
             elif dr.hint(self.reflection and self.refraction, mode="scalar"):
+                weight = dr.select(mirrors, mirror_weight, through_weight)
                 ray = dr.select(mirrors, self.reflected(ray, hit), self.transmitted(ray, hit, finish.eta)[0])
             elif dr.hint(self.reflection, mode="scalar"):
+                weight = mirror_weight
                 ray = self.reflected(ray, hit)
             elif dr.hint(self.refraction, mode="scalar"):
+                weight = through_weight
                 ray = self.transmitted(ray, hit, finish.eta)[0]
-        return radiance
+        return radiance, too_deep
 
     def _successor_weight(self, enabled, weight, active):
         """Weight of a mirrored or refracted ray, and where it is followed."""
@@ -264,7 +320,7 @@ class Whitted(mi.SamplingIntegrator):
 
     @dr.syntax
     def _local_radiance(self, ray: Ray, hit: Hit, finish: Finish, color):
-        radiance = finish.ka * self.ambient * color
+        radiance = finish.ka * self.types.Color3(self.ambient) * color
         if dr.hint(self.shadows, mode="scalar"):
             lit = hit.valid & (finish.kd + finish.ks > 0)
             light = dr.zeros(mi.UInt32, dr.width(ray.d))
@@ -279,8 +335,8 @@ class Whitted(mi.SamplingIntegrator):
     def sample(self, scene, sampler, ray, medium=None, active=True):
         """Radiance along single-precision rays, of any sensor."""
         with self.prepared(scene):
-            color = self.trace(start_ray(self.types, ray.o, unit(mi.Vector3d(ray.d))), active)
-        return color, mi.Bool(active), []
+            color, _ = self.trace(start_ray(self.types, ray.o, unit(mi.Vector3d(ray.d))), active)
+        return mi.Color3f(color), mi.Bool(active), []
 
     def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
         """Draw a picture. The samples of a pixel lie on a regular grid: in the centres of n x n = `spp` cells."""
@@ -303,7 +359,8 @@ class Whitted(mi.SamplingIntegrator):
 
         Yields:
             The first row of a finished band within the film's crop window, and its pixels' colours (Color3f), row by
-            row. After every launch `progress`, if any, is called with the finished share of the picture.
+            row. Its pixels are among `pixels_too_deep` by then. After every launch `progress`, if any, is called with
+            the finished share of the picture.
 
         """
         offsets = self.sample_offsets(spp or sensor.sampler().sample_count())
@@ -313,40 +370,50 @@ class Whitted(mi.SamplingIntegrator):
     def _bands(self, sensor, offsets, progress):
         width, height = sensor.film().crop_size()
         table = column(mi.Float64, offsets)
-        pace = Pace(self.branching)
+        pace = Pace(self.branching, self.max_depth[0])
+        self.pixels_too_deep = 0
         first = 0
         while first < height:
             rows = min(height - first, pace.rows(width))
-            color = dr.opaque(mi.Color3f, 0, rows * width)  # so that the first launch needs no kernel of its own
+            # Opaque, so that the first launch needs no kernel of its own.
+            color = dr.opaque(mi.Color3d, 0, rows * width)
+            too_deep = dr.opaque(mi.Bool, False, rows * width) if self.depth_limited else False
             done = 0
             while done < len(offsets):
                 count = min(len(offsets) - done, pace.samples(rows * width))
                 with pace.launch(rows * width * count):
-                    color = self._add_samples(sensor, color, first, table, done, done + count)
-                    dr.eval(color)
+                    color, too_deep = self._add_samples(sensor, color, too_deep, first, table, done, done + count)
+                    dr.eval(color, too_deep)
                     dr.sync_thread()
                 done += count
                 if progress is not None:
                     progress((first + rows * done / len(offsets)) / height)
-            yield first, quotient(color, len(offsets))
+            if self.depth_limited:
+                self.pixels_too_deep += dr.count(too_deep)[0]
+            yield first, mi.Color3f(quotient(color, len(offsets)))
             first += rows
 
     @dr.syntax
-    def _add_samples(self, sensor, color, first, offsets, sample, end):
-        """Colours of the pixels of whole rows from row `first` on, with those of some more samples added."""
+    def _add_samples(self, sensor, color, too_deep, first, offsets, sample, end):
+        """What `trace` finds for the pixels of whole rows from row `first` on, with some more samples added."""
         width = dr.width(color)
         corner = _corners(sensor.film(), first, width)
         if dr.hint(dr.width(offsets) == 2, mode="scalar"):
             # One sample needs no loop, which takes twice as long to record.
-            color += self.trace(self.primary_ray(sensor, corner + dr.gather(mi.Point2d, offsets, mi.UInt32(0))), True)
+            position = corner + dr.gather(mi.Point2d, offsets, mi.UInt32(0))
+            more, deep = self.trace(self.primary_ray(sensor, position), True)
+            color += more
+            too_deep |= deep
         else:
             # Opaque, so that all numbers of samples share one kernel.
             sample, end = dr.opaque(mi.UInt32, sample, width), dr.opaque(mi.UInt32, end)
             while sample < end:
                 position = corner + dr.gather(mi.Point2d, offsets, sample)
-                color += self.trace(self.primary_ray(sensor, position), True)
+                more, deep = self.trace(self.primary_ray(sensor, position), True)
+                color += more
+                too_deep |= deep
                 sample += 1
-        return color
+        return color, too_deep
 
     @staticmethod
     def sample_offsets(spp):
@@ -364,7 +431,9 @@ class Whitted(mi.SamplingIntegrator):
     def primary_ray(self, sensor, position) -> Ray:
         """The ray through a film position (Point2d, in pixels), in double precision where the sensor has it."""
         if hasattr(sensor, "primary_ray"):
-            ray = start_ray(self.types, *sensor.primary_ray(position))
+            o, d = sensor.primary_ray(position)
+            error, spread = self._errors_of_primary_rays
+            ray = start_ray(self.types, o, d, error, spread)
             return ray if self._eye_contact is None else self._eye_contact.start(ray)
         size, offset = sensor.film().crop_size(), sensor.film().crop_offset()
         sample = mi.Point2f(quotient(position - mi.Point2d(offset), mi.Point2d(size)))

@@ -4,6 +4,7 @@ import drjit as dr
 import mitsuba as mi
 
 from mitsuba_plugins.arithmetic import quotient
+from mitsuba_plugins.integrators.rounding import epsilon
 
 
 class ProjectedBitmap(mi.Texture):
@@ -38,17 +39,24 @@ class ProjectedBitmap(mi.Texture):
         self.to_r = _row(props["to_r"])
         dr.make_opaque(self.texels, self.to_s, self.to_r, self.height, self.width)
 
-    def color_at(self, p):
-        """Colour at a position of either precision, Point3d for exact texel boundaries."""
-        p = mi.Point3d(p)
-        column = self._texel(self.to_s, p, self.width)
-        row = self._texel(self.to_r, p, self.height)
-        return dr.gather(mi.Color3f, self.texels, row * mi.UInt32(self.width) + column)
+    def color_at(self, p, errors=0):
+        """Colour (Color3d) at a position of either precision, Point3d for exact texel boundaries.
+
+        A position that is a whole number of texels, but for the errors of the coordinates, is that number.
+        """
+        p, errors = mi.Vector3d(p), mi.Vector3d(errors)
+        column = self._texel(self.to_s, p, errors, self.width)
+        row = self._texel(self.to_r, p, errors, self.height)
+        return mi.Color3d(dr.gather(mi.Color3f, self.texels, row * mi.UInt32(self.width) + column))
 
     @classmethod
-    def _texel(cls, projection, p, count):
+    def _texel(cls, projection, p, errors, count):
         a, b, c, d = projection
-        return cls._wrap(dr.trunc((a * p.x + b * p.y + c * p.z + d) * count), count)
+        position = (a * p.x + b * p.y + c * p.z + d) * count
+        rounding = 4 * epsilon(position)
+        errors = errors + dr.abs(p) * rounding
+        error = dr.abs(a) * errors.x + dr.abs(b) * errors.y + dr.abs(c) * errors.z + dr.abs(d) * rounding
+        return cls._wrap(dr.trunc(position + dr.copysign(error, position) * count), count)
 
     @staticmethod
     def _wrap(position, count):
@@ -59,7 +67,7 @@ class ProjectedBitmap(mi.Texture):
         return mi.UInt32(dr.fmin(dr.fmax(remainder, 0), count - 1))
 
     def eval(self, si, active=True):
-        return self.color_at(si.p) & active
+        return mi.Color3f(self.color_at(si.p)) & active
 
     def eval_3(self, si, active=True):
         return self.eval(si, active)

@@ -4,6 +4,7 @@ import drjit as dr
 import mitsuba as mi
 
 from mitsuba_plugins.arithmetic import quotient
+from mitsuba_plugins.integrators.rounding import epsilon
 
 
 class SolidChecker(mi.Texture):
@@ -29,20 +30,25 @@ class SolidChecker(mi.Texture):
 
     def __init__(self, props):
         mi.Texture.__init__(self, props)
-        self.first = mi.Color3f(props["first"])
-        self.second = mi.Color3f(props["second"])
+        self.first = mi.Color3d(props["first"])
+        self.second = mi.Color3d(props["second"])
         self.size = mi.Float64(props["size"])
         dr.make_opaque(self.first, self.second, self.size)
 
-    def color_at(self, p):
-        """Colour at a position of either precision: Point3d for exact boundaries between cubes."""
-        cell = dr.floor(quotient(mi.Point3d(p), self.size))
+    def color_at(self, p, errors=0):
+        """Colour (Color3d) at a position of either precision: Point3d for exact boundaries between cubes.
+
+        A coordinate that is a whole number of edges, but for its error, is that number.
+        """
+        p = mi.Vector3d(p)
+        p = p + errors + dr.abs(p) * (2 * epsilon(p))
+        cell = dr.floor(quotient(p, self.size))
         # The parity of a sum is found without the sum: far from the origin it would overflow an integer.
         half = (cell.x + cell.y + cell.z) * 0.5
         return dr.select(half == dr.floor(half), self.first, self.second)
 
     def eval(self, si, active=True):
-        return self.color_at(si.p) & active
+        return mi.Color3f(self.color_at(si.p)) & active
 
     def eval_3(self, si, active=True):
         return self.eval(si, active)

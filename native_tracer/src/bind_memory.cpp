@@ -1,6 +1,6 @@
 // A reserve of memory, so that running out of it can be told.
 //
-// Where not even an integer can be allocated, CPython 3.11 to 3.13 loops for ever: entering the handler of an exception
+// Where not even an integer can be allocated, CPython 3.11 loops for ever: entering the handler of an exception
 // may need one, and its failure enters the same handler again, in C, where no signal is seen. So the first allocation
 // that fails gives the reserve back. It fails nevertheless, but what follows, up to the message, finds room.
 

@@ -205,17 +205,19 @@ std::size_t count_nan_pixels(const Pixels& pixels) {
 
 // ---- Bytes --------------------------------------------------------------------------------------------------------
 
-// round(255 c) with c clamped to 0..1, halves up; a NaN is black. In double, where 255 c is exact. Block by block, so
-// that the compiler can compute several at once.
+// The nearest of 255 levels to c, clamped to 0..1, halves up, where a half is one also if roundings have left it a
+// little below: decimal numbers in files make halves common, and renderers must not differ in them. A NaN is black. In
+// double, where 255 c is exact. Block by block, so that the compiler can compute several at once.
 void quantize(const float* values, std::size_t count, std::uint8_t* bytes) {
     constexpr std::size_t block = 1024;
+    constexpr double half = 0.5 + 1e-4;  // of a level
     std::int32_t rounded[block];
     for (std::size_t first = 0; first < count; first += block) {
         const std::size_t size = std::min(block, count - first);
         for (std::size_t i = 0; i < size; ++i) {
             const float positive = values[first + i] > 0.0F ? values[first + i] : 0.0F;
             const float clamped = positive < 1.0F ? positive : 1.0F;
-            rounded[i] = static_cast<std::int32_t>(255.0 * static_cast<double>(clamped) + 0.5);
+            rounded[i] = static_cast<std::int32_t>(255.0 * static_cast<double>(clamped) + half);
         }
         for (std::size_t i = 0; i < size; ++i) {
             bytes[first + i] = static_cast<std::uint8_t>(rounded[i]);
@@ -258,6 +260,7 @@ void bind_render(nb::module_& module) {
                 result["transmitted"] = image.counts.transmitted;
                 result["shadow"] = image.counts.shadow;
                 result["deepest"] = image.counts.deepest;
+                result["pixels_too_deep"] = image.counts.pixels_too_deep;
                 result["threads"] = image.threads;
                 result["search"] = image.by_tree ? "bvh" : "brute";
                 return result;
@@ -274,6 +277,7 @@ void bind_render(nb::module_& module) {
                "precision"_a = "double", "search"_a = "auto", "The rays of one pixel as nested dictionaries.");
     module.def("count_nan_pixels", &count_nan_pixels, "pixels"_a,
                "How many pixels of a float32 buffer, three numbers each, have a NaN among them.");
-    module.def("quantize", &quantized, "pixels"_a,
-               "8-bit RGB of a float32 buffer: round(255 c), c clamped to 0..1, a NaN black.");
+    module.def(
+        "quantize", &quantized, "pixels"_a,
+        "8-bit RGB of a float32 buffer: the nearest of 255 levels to c, halves up, c clamped to 0..1, a NaN black.");
 }

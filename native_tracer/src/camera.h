@@ -7,6 +7,7 @@
 #include <numbers>
 
 #include "description.h"
+#include "rounding.h"
 #include "vector.h"
 
 namespace whitted::WHITTED_ISA {
@@ -43,6 +44,9 @@ class Camera {
  public:
     Camera(const CameraDescription& camera, int width, int height)
         : eye_(vector_of<Real>(camera.eye)),
+          eye_error_(input_error_of_point<Real>(camera.eye)),
+          spread_(least_spread<Real> + (eye_error_ + input_error_of_point<Real>(camera.look_at)) /
+                                           length(vector_of<Real>(direction(camera.eye, camera.look_at)))),
           forward_(normalize(vector_of<Real>(in_range(direction(camera.eye, camera.look_at))))),
           right_(normalize(cross(forward_, vector_of<Real>(in_range(camera.up))))),
           up_(cross(right_, forward_)),
@@ -51,6 +55,10 @@ class Camera {
           scale_(std::tan(static_cast<Real>(camera.fovy) * std::numbers::pi_v<Real> / 360) / height_) {}
 
     const Vector<Real>& eye() const { return eye_; }
+
+    // How far the eye and directions may be off, see rounding.h.
+    Real eye_error() const { return eye_error_; }
+    Real spread() const { return std::min(spread_, most_blur<Real>); }
 
     // Unit directions through points of the picture, in pixels from its top-left corner. On the plane at distance 1 the
     // window is 2 tan(fovy/2) high, and as wide as square pixels make it.
@@ -62,7 +70,9 @@ class Camera {
     }
 
  private:
-    Vector<Real> eye_, forward_, right_, up_;
+    Vector<Real> eye_;
+    Real eye_error_, spread_;
+    Vector<Real> forward_, right_, up_;
     Real width_, height_;
     Real scale_;  // half a pixel, on the plane at distance 1
 };

@@ -95,6 +95,7 @@ struct RenderSettings {
 
 struct RayCounts {
     std::uint64_t primary = 0, reflected = 0, transmitted = 0, shadow = 0;
+    std::uint64_t pixels_too_deep = 0;  // in which the depth limit dropped a ray that the cut-off would have kept
     int deepest = 0;
 };
 

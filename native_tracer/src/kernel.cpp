@@ -2,12 +2,10 @@
 
 #include "kernel.h"
 
-#include <algorithm>
 #include <array>
 #include <cstddef>
 
 #include "camera.h"
-#include "rounding.h"
 #include "trace.h"
 
 namespace whitted::WHITTED_ISA {
@@ -21,10 +19,10 @@ class PrimaryRays {
                 const Tile& tile)
         : camera_(camera),
           contact_(contact),
-          eye_error_(std::max({input_error(camera.eye().x), input_error(camera.eye().y), input_error(camera.eye().z)})),
           tile_(tile),
           grid_(settings.grid),
           shift_(settings.corner ? Real(0.5) : Real(0)),
+          reach_(max_norm(Vector<Lanes<Real>>(camera.eye()))),
           column_(tile.left),
           row_(tile.top) {}
 
@@ -40,12 +38,12 @@ class PrimaryRays {
         group.rays.origin = Vector<L>(camera_.eye());
         group.rays.direction =
             camera_.directions(columns + L(offset(sample_ % grid_)), rows + L(offset(sample_ / grid_)));
-        group.rays.t_min = eye_error_;
+        group.rays.t_min = camera_.eye_error();
         group.rays.object = contact_.object;
         group.rays.patch = contact_.patch;
-        group.rays.inside = contact_.leads_inside(group.rays.direction);
-        group.rays.spread = least_spread<Real>;
-        group.rays.reach = max_norm(group.rays.origin);
+        group.rays.inside = contact_.leads_inside(group.rays.direction, camera_.eye_error(), camera_.spread());
+        group.rays.spread = camera_.spread();
+        group.rays.reach = reach_;
         group.weight = Real(1);
         group.depth = 0;
         group.pixel = Indices<Real>((row_ - tile_.top) * (tile_.right - tile_.left) + column_ - tile_.left) +
@@ -74,10 +72,10 @@ class PrimaryRays {
 
     const Camera<Real>& camera_;
     const EyeContact<Real>& contact_;
-    const Real eye_error_;
     const Tile tile_;
     const int grid_;
     const Real shift_;
+    const Lanes<Real> reach_;  // of the eye
     int column_, row_;
     int sample_ = 0;  // a place in the grid
 };

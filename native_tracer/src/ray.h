@@ -8,6 +8,7 @@
 #include <utility>
 #include <vector>
 
+#include "rounding.h"
 #include "vector.h"
 
 namespace whitted::WHITTED_ISA {
@@ -27,13 +28,13 @@ struct Rays {
 // epsilon is twice their sum.
 template <typename Real>
 Lanes<Real> rounding_error(Lanes<Real> reach, Lanes<Real> t) {
-    return Lanes<Real>(32 * std::numeric_limits<Real>::epsilon()) * (reach + t);
+    return Lanes<Real>(32 * input_epsilon<Real>) * (reach + t);
 }
 
 // No coordinate is larger that has such a rounding error.
 template <typename Real>
 Lanes<Real> reach_of(Lanes<Real> rounding_error) {
-    return Lanes<Real>(1 / (32 * std::numeric_limits<Real>::epsilon())) * rounding_error;
+    return Lanes<Real>(1 / (32 * input_epsilon<Real>)) * rounding_error;
 }
 
 // Rays that are traced together, one to a lane. Nobody looks at the lanes that are not active.

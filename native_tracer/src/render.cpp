@@ -100,6 +100,7 @@ class Drawing {
         image_.counts.reflected += counts.reflected;
         image_.counts.transmitted += counts.transmitted;
         image_.counts.shadow += counts.shadow;
+        image_.counts.pixels_too_deep += counts.pixels_too_deep;
         image_.counts.deepest = std::max(image_.counts.deepest, counts.deepest);
         if (--working_ == 0) {
             finished_.notify_all();

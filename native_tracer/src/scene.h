@@ -70,12 +70,14 @@ template <typename Real>
 struct EyeContact {
     int object = -1, patch = -1;
     std::vector<Vector<Real>> outward;  // of all the object's patches that the eye lies on
+    Real curvature = 0;
 
-    // Rays along a surface, too, for a body is closed.
-    Mask<Real> leads_inside(const Vector<Lanes<Real>>& direction) const {
+    // Rays along a plane, too, for a body is closed; not those that touch a sphere. Eye and directions may be off.
+    Mask<Real> leads_inside(const Vector<Lanes<Real>>& direction, Real eye_error, Real spread) const {
+        const Real bound = curvature > 0 ? -(spread + curvature * eye_error) : spread;
         Mask<Real> result = outward.empty() ? Mask<Real>::none() : ~Mask<Real>::none();
         for (const Vector<Real>& normal : outward) {
-            result &= dot(Vector<Lanes<Real>>(normal), direction) <= Lanes<Real>(least_spread<Real>);
+            result &= dot(Vector<Lanes<Real>>(normal), direction) < Lanes<Real>(bound);
         }
         return result;
     }
@@ -157,18 +159,19 @@ struct Scene {
         const auto may_hit = [&](int sphere) {
             return !view || any((*view)[static_cast<std::size_t>(sphere)].may_be_hit(rays.direction));
         };
-        for_each_crossing<Ties::found>(rays, limit, close, may_hit, [&](Indices<Real> object, const Crossing<Real>& crossing) {
-            const Mask<Real> nearer = (crossing.t < hits.t) | ((crossing.t <= hits.t) & (object < hits.object));
-            second = min(second, max(crossing.t, hits.t));
-            hits.t = select(nearer, crossing.t, hits.t);
-            hits.object = select(nearer, object, hits.object);
-            hits.patch = select(nearer, crossing.patch, hits.patch);
-            hits.inside = select(nearer, crossing.inside, hits.inside);
-            limit = min(hits.t, limit);
-            return true;
-        });
+        for_each_crossing<Ties::found>(
+            rays, limit, close, may_hit, [&](Indices<Real> object, const Crossing<Real>& crossing) {
+                const Mask<Real> nearer = (crossing.t < hits.t) | ((crossing.t <= hits.t) & (object < hits.object));
+                second = min(second, max(crossing.t, hits.t));
+                hits.t = select(nearer, crossing.t, hits.t);
+                hits.object = select(nearer, object, hits.object);
+                hits.patch = select(nearer, crossing.patch, hits.patch);
+                hits.inside = select(nearer, crossing.inside, hits.inside);
+                limit = min(hits.t, limit);
+                return true;
+            });
         const Lanes<Real> range = Lanes<Real>(most_blur<Real>) * (hits.t + rays.reach);
-        close |= second - hits.t <= range;
+        close |= (second - hits.t <= range) | (hits.t < range);
         close &= wanted;
         if (any(close)) [[unlikely]] {
             const Hits<Real> settled = nearest_hit_by_rules(rays, close);
@@ -199,20 +202,38 @@ struct Scene {
     // What becomes of rays that meet two things at once, but for rounding errors.
     enum class Ties { found, found_in_the_way, decided };
 
+    // The first object of the file among those that tie with the nearest: the order in which they are visited does not
+    // matter, also where one ties with two that do not tie with one another.
     [[gnu::noinline]] Hits<Real> nearest_hit_by_rules(const Rays<Real>& rays, Mask<Real> wanted) const {
-        Hits<Real> hits;
-        Lanes<Real> limit = select(wanted, hits.t, Lanes<Real>(Real(-1)));
+        const Lanes<Real> nowhere = Real(-1);
+        const Lanes<Real> infinity = std::numeric_limits<Real>::infinity();
         Mask<Real> close = wanted;
-        for_each_crossing<Ties::decided>(rays, limit, close, [](int) { return true; }, [&](Indices<Real> object, const Crossing<Real>& crossing) {
-            const Mask<Real> ties = tie(rays, hits, crossing);
-            const Mask<Real> nearer = select(ties, object < hits.object, crossing.t < hits.t);
-            hits.t = select(nearer, crossing.t, hits.t);
-            hits.object = select(nearer, object, hits.object);
-            hits.patch = select(nearer, crossing.patch, hits.patch);
-            hits.inside = select(nearer, crossing.inside, hits.inside);
-            limit = min(hits.t, limit);
-            return true;
-        });
+        const auto any_sphere = [](int) { return true; };
+        Lanes<Real> nearest = infinity;
+        Lanes<Real> error = Real(0);
+        Lanes<Real> limit = select(wanted, infinity, nowhere);
+        for_each_crossing<Ties::decided>(rays, limit, close, any_sphere,
+                                         [&](Indices<Real>, const Crossing<Real>& crossing) {
+                                             const Lanes<Real> its_error = distance_errors(rays, crossing);
+                                             const Mask<Real> same = (crossing.t <= nearest) & (its_error > error);
+                                             error = select((crossing.t < nearest) | same, its_error, error);
+                                             nearest = min(crossing.t, nearest);
+                                             limit = min(nearest, limit);
+                                             return true;
+                                         });
+        Hits<Real> hits;
+        limit = select(wanted, nearest + Lanes<Real>(most_blur<Real>) * (nearest + rays.reach), nowhere);
+        for_each_crossing<Ties::decided>(
+            rays, limit, close, any_sphere, [&](Indices<Real> object, const Crossing<Real>& crossing) {
+                const Mask<Real> ties =
+                    (crossing.t < infinity) & (crossing.t - nearest <= error + distance_errors(rays, crossing));
+                const Mask<Real> first = ties & ((hits.object < Indices<Real>(0)) | (object < hits.object));
+                hits.t = select(first, crossing.t, hits.t);
+                hits.object = select(first, object, hits.object);
+                hits.patch = select(first, crossing.patch, hits.patch);
+                hits.inside = select(first, crossing.inside, hits.inside);
+                return true;
+            });
         hits.patch = Indices<Real>::gather([&](int lane) {
             return wanted[lane] && hits.object[lane] >= 0 ? piece_met(rays, hits, lane) : hits.patch[lane];
         });
@@ -256,23 +277,28 @@ struct Scene {
         const Lanes<Real> nowhere = Real(-1);
         Lanes<Real> limit = select(open, distance, nowhere);
         const auto may_block = [&](int sphere) { return may_hit(sphere, open); };
-        for_each_crossing<ties>(rays, limit, close, may_block, [&](Indices<Real> object, const Crossing<Real>& crossing) {
-            const Mask<Real> blocked = open & (crossing.t < distance) & ~light.lies_at(crossing, rays.direction);
-            blocker = select(blocked, object, blocker);
-            open &= ~blocked;
-            limit = select(open, limit, nowhere);
-            return any(open);
-        });
+        const Lanes<Real> range = Lanes<Real>(most_blur<Real>) * rays.reach;
+        for_each_crossing<ties>(
+            rays, limit, close, may_block, [&](Indices<Real> object, const Crossing<Real>& crossing) {
+                const Mask<Real> blocked = open & (crossing.t < distance) & ~light.lies_at(crossing, rays.direction);
+                blocker = select(blocked, object, blocker);
+                if (any(blocked & (crossing.t < range))) [[unlikely]] {
+                    close |= blocked & (crossing.t < range);
+                }
+                open &= ~blocked;
+                limit = select(open, limit, nowhere);
+                return any(open);
+            });
         return blocker;
     }
 
-    // The rays that cross an object at the distance of what they have hit, but for rounding errors.
-    Mask<Real> tie(const Rays<Real>& rays, const Hits<Real>& hits, const Crossing<Real>& crossing) const {
-        return Mask<Real>::gather([&](int lane) {
-            return std::isfinite(hits.t[lane]) && std::isfinite(crossing.t[lane]) &&
-                   std::abs(crossing.t[lane] - hits.t[lane]) <=
-                       distance_error(rays, lane, crossing.patch[lane], crossing.t[lane]) +
-                           distance_error(rays, lane, hits.patch[lane], hits.t[lane]);
+    // How far the distances of crossings may be off.
+    Lanes<Real> distance_errors(const Rays<Real>& rays, const Crossing<Real>& crossing) const {
+        return Lanes<Real>::gather([&](int lane) {
+            const Real t = crossing.t[lane];
+            return std::isfinite(t) ? std::min(distance_error(rays, lane, crossing.patch[lane], t),
+                                               most_blur<Real> * (t + rays.reach[lane]))
+                                    : Real(0);
         });
     }
 
@@ -300,7 +326,13 @@ struct Scene {
         Crossing<Real> crossing;
         const auto cross_sphere = [&](int sphere) __attribute__((always_inline)) {
             const Sphere<Real>& s = spheres[static_cast<std::size_t>(sphere)];
-            return !find_crossing(s, rays, crossing) || visit(s.object, crossing);
+            if (!find_crossing(s, rays, crossing)) {
+                return true;
+            }
+            if constexpr (ties == Ties::decided) {
+                decide_start(s, rays, crossing);
+            }
+            return visit(s.object, crossing);
         };
         const auto cross_polyhedra = [&](int polyhedron, int end) __attribute__((always_inline)) {
             for (; polyhedron < end; ++polyhedron) {
@@ -360,7 +392,7 @@ template <typename Real>
 Patch<Real> sphere_of(const SphereDescription& sphere) {
     const Vector<Real> center = vector_of<Real>(sphere.center);
     const Real radius = static_cast<Real>(sphere.radius);
-    const Real error = input_error(radius) + std::max({input_error(center.x), input_error(center.y), input_error(center.z)});
+    const Real error = input_error(radius) + input_error_of_point<Real>(sphere.center);
     return {center, radius, true, error, 0, 1 / radius};
 }
 
@@ -427,6 +459,7 @@ Scene<Real>::Scene(const SceneDescription& description, const SearchPlan& plan)
         if (eye_contact.object < 0 && (!polyhedron || lies_within(polyhedron->planes, description.camera.eye))) {
             eye_contact.object = contact.object;
             eye_contact.patch = contact.patch;
+            eye_contact.curvature = patches[static_cast<std::size_t>(contact.patch)].curvature;
         }
         if (contact.object == eye_contact.object) {
             eye_contact.outward.push_back(contact.outward);

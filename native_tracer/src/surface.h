@@ -12,6 +12,7 @@
 #pragma once
 
 #include <limits>
+#include <type_traits>
 
 #include "ray.h"
 #include "rounding.h"
@@ -38,9 +39,7 @@ struct Patch {
     Real curvature = 0;
 
     // How far it may be off where rays of that reach are compared with it, see Rays.
-    Lanes<Real> error_at(Lanes<Real> reach) const {
-        return Lanes<Real>(error) + Lanes<Real>(error_by_reach) * reach;
-    }
+    Lanes<Real> error_at(Lanes<Real> reach) const { return Lanes<Real>(error) + Lanes<Real>(error_by_reach) * reach; }
 };
 
 template <typename Real>
@@ -49,6 +48,8 @@ struct Sphere {
     Real radius;
     Real error;   // how far the surface may be off
     Real reach2;  // a line farther from the centre than its root misses, whatever was rounded
+    Real diameter;
+    Real touching, most_touching;  // of a line that touches it, the discriminant for its error, and at most
     int object, patch;
 
     Sphere(const Patch<Real>& sphere, int object_, int patch_)
@@ -56,6 +57,9 @@ struct Sphere {
           radius(sphere.size),
           error(sphere.error),
           reach2(radius * radius * (1 + 32 * std::numeric_limits<Real>::epsilon())),
+          diameter(2 * radius),
+          touching(diameter * error),
+          most_touching(most_blur<Real> * radius * radius),
           object(object_),
           patch(patch_) {}
 };
@@ -99,8 +103,8 @@ template <typename Real>
     const L radius2 = radius * radius;
     const L discriminant = radius2 - across2;
     // A ray that touches the sphere passes it by.
-    const L blur = rays.t_min + L(sphere.error) + abs(closest) * rays.spread;
-    const L touching = radius * min(blur + blur, L(most_blur<Real>) * radius);
+    const L touching = min(L(sphere.diameter) * (rays.t_min + abs(closest) * rays.spread) + L(sphere.touching),
+                           L(sphere.most_touching));
     const L root = sqrt(max(discriminant, zero));
     const L q = closest + select(closest >= zero, root, -root);
     const L other = (dot(g, g) - radius2) / q;
@@ -119,6 +123,23 @@ template <typename Real>
         crossing.inside |= starts_here;
     }
     return true;
+}
+
+// Of rays that start on the sphere by the roundings of their origins only, and not by knowledge: there they do not meet
+// it.
+template <typename Real>
+void decide_start(const Sphere<Real>& sphere, const Rays<Real>& rays, Crossing<Real>& crossing) {
+    using L = Lanes<Real>;
+    const Vector<L> g = Vector<L>(sphere.center) - rays.origin;
+    // Of a sphere smaller than such errors nothing is known.
+    const L error = rays.t_min + L(sphere.error);
+    const Mask<Real> starts = (abs(length(g) - L(sphere.radius)) <= error) &
+                              (error <= L(most_blur<Real>) * L(sphere.radius)) &
+                              ~(rays.object == Indices<Real>(sphere.object));
+    const L through = L(2) * dot(g, rays.direction);
+    const Mask<Real> crosses = (through > rays.t_min) & (crossing.t < L(std::numeric_limits<Real>::infinity()));
+    crossing.t = select(starts, select(crosses, through, L(std::numeric_limits<Real>::infinity())), crossing.t);
+    crossing.inside |= starts;
 }
 
 // A sphere as seen from a point, such as the eye or a light: tells most lines through the point that miss the sphere,
@@ -186,8 +207,8 @@ Crossing<Real> crossing_of(const Passage<Real>& passage, const Rays<Real>& rays,
     const L zero = Real(0);
     const L infinity = std::numeric_limits<Real>::infinity();
     const Mask<Real> enters = (passage.enter > rays.t_min) & ~from_within;
-    const L leave = select(from_within, max(passage.leave, zero),
-                           select(passage.leave > rays.t_min, passage.leave, infinity));
+    const L leave =
+        select(from_within, max(passage.leave, zero), select(passage.leave > rays.t_min, passage.leave, infinity));
     return {select(passage.misses, infinity, select(enters, passage.enter, leave)),
             select(enters, passage.enter_patch, passage.leave_patch), ~enters};
 }
@@ -232,27 +253,17 @@ template <typename Real>
     return crossing_of(passage, rays, from_within);
 }
 
-// The same, faster, for rays that are far from ties; adds those that are not to `close`. A quotient is only taken where
-// a plane counts: where the end of the passage so far lies outside of it.
-//
-// Returns false, with nothing said about where, if no ray crosses the polyhedron.
-template <bool which_piece, typename Real>
-[[gnu::always_inline]] inline bool find_crossing(const Polyhedron<Real>& polyhedron, const Patch<Real>* planes,
-                                                 const Rays<Real>& rays, Crossing<Real>& crossing, Mask<Real>& close) {
+// What is known of where rays start.
+enum class Start { elsewhere, mixed, within };
+
+// The passage of rays that are far from ties, faster; adds those that are not to `close`.
+template <Start start, bool which_piece, typename Real>
+[[gnu::always_inline]] inline void pass(const Polyhedron<Real>& polyhedron, const Patch<Real>* planes,
+                                        const Rays<Real>& rays, Passage<Real>& passage, Lanes<Real>& between_planes,
+                                        Mask<Real>& close) {
     using L = Lanes<Real>;
     const L zero = Real(0);
-    const Mask<Real> starts_here = rays.object == Indices<Real>(polyhedron.object);
-    const Mask<Real> from_within = starts_here & rays.inside;
-    const Mask<Real> elsewhere = starts_here & ~rays.inside;
-    if (all(elsewhere)) {
-        return false;
-    }
-    const Indices<Real> own = select(from_within, rays.patch, Indices<Real>(-1));
-    Passage<Real> passage;
-    passage.misses = elsewhere;
-    Mask<Real> along = Mask<Real>::none();
-    L between_planes = std::numeric_limits<Real>::infinity();
-
+    const Mask<Real> from_within = (rays.object == Indices<Real>(polyhedron.object)) & rays.inside;
     const int end = polyhedron.first_plane + polyhedron.plane_count;
     for (int k = polyhedron.first_plane; k < end; ++k) {
         const Patch<Real>& plane = planes[k];
@@ -261,37 +272,76 @@ template <bool which_piece, typename Real>
         const L height = dot(normal, rays.origin) + L(plane.size);
         const L t = -height / slope;
         const Indices<Real> patch = k;
+        const Mask<Real> along = abs(slope) <= rays.spread;
+        if (any(along)) [[unlikely]] {
+            close |= along;
+        }
 
-        const Mask<Real> entering = slope < -rays.spread;
-        const Mask<Real> leaving = slope > rays.spread;
-        along |= ~(entering | leaving);
-        const Mask<Real> enters_last = entering & (t > passage.enter);
-        const Mask<Real> leaves_first = leaving & (t < passage.leave) & ~(own == patch);
+        const Mask<Real> entering = slope < zero;
         if constexpr (which_piece) {
             // No number before the first plane.
-            between_planes = min(abs(t - select(entering, passage.enter, passage.leave)), between_planes);
+            const L before = start == Start::within ? passage.leave : select(entering, passage.enter, passage.leave);
+            between_planes = min(abs(t - before), between_planes);
         }
-        passage.enter = select(enters_last, t, passage.enter);
+        Mask<Real> leaves_first = ~entering & (t < passage.leave);
+        if constexpr (start != Start::elsewhere) {
+            leaves_first &= ~(from_within & (rays.patch == patch));
+        }
         passage.leave = select(leaves_first, t, passage.leave);
-        passage.enter_patch = select(enters_last, patch, passage.enter_patch);
         passage.leave_patch = select(leaves_first, patch, passage.leave_patch);
-
-        passage.misses |= ((passage.enter > passage.leave) | (passage.leave < rays.t_min)) & ~from_within;
-        if (all(passage.misses)) {
-            break;
+        if constexpr (start == Start::within) {
+            continue;
         }
+        const Mask<Real> enters_last = entering & (t > passage.enter);
+        passage.enter = select(enters_last, t, passage.enter);
+        passage.enter_patch = select(enters_last, patch, passage.enter_patch);
+
+        Mask<Real> misses = (passage.enter > passage.leave) | (passage.leave < rays.t_min);
+        if constexpr (start == Start::mixed) {
+            misses &= ~from_within;
+        }
+        passage.misses |= misses;
+        if (all(passage.misses)) {
+            return;
+        }
+    }
+}
+
+// Returns false, with nothing said about where, if no ray crosses the polyhedron.
+template <bool which_piece, typename Real>
+[[gnu::always_inline]] inline bool find_crossing(const Polyhedron<Real>& polyhedron, const Patch<Real>* planes,
+                                                 const Rays<Real>& rays, Crossing<Real>& crossing, Mask<Real>& close) {
+    using L = Lanes<Real>;
+    const L zero = Real(0);
+    const L infinity = std::numeric_limits<Real>::infinity();
+    const Mask<Real> starts_here = rays.object == Indices<Real>(polyhedron.object);
+    const Mask<Real> from_within = starts_here & rays.inside;
+    const Mask<Real> elsewhere = starts_here & ~rays.inside;
+    if (all(elsewhere)) {
+        return false;
+    }
+    Passage<Real> passage;
+    passage.misses = elsewhere;
+    L between_planes = infinity;
+    if (!any(from_within)) {
+        pass<Start::elsewhere, which_piece>(polyhedron, planes, rays, passage, between_planes, close);
+    } else if (which_piece && all(from_within)) {
+        pass<Start::within, which_piece>(polyhedron, planes, rays, passage, between_planes, close);
+    } else {
+        pass<Start::mixed, which_piece>(polyhedron, planes, rays, passage, between_planes, close);
     }
     // Later planes only bring the ends of the passage farther apart.
     const L gap = passage.enter - passage.leave;
-    const Mask<Real> at_edge = (gap > zero) & (gap <= L(most_blur<Real>) * (rays.reach + passage.enter));
-    close |= (along | at_edge) & ~elsewhere;
+    const Mask<Real> at_edge = (gap > zero) & (gap <= L(most_blur<Real>) * (rays.reach + passage.enter)) & ~elsewhere;
+    if (any(at_edge)) [[unlikely]] {
+        close |= at_edge;
+    }
     if (all(passage.misses)) {
         return false;
     }
     crossing = crossing_of(passage, rays, from_within);
     if constexpr (which_piece) {
-        close |= (between_planes <= L(most_blur<Real>) * (rays.reach + crossing.t)) &
-                 (crossing.t < L(std::numeric_limits<Real>::infinity()));
+        close |= (between_planes < L(most_blur<Real>) * (rays.reach + crossing.t)) & (crossing.t < infinity);
     }
     return true;
 }

@@ -73,6 +73,7 @@ class Tracer {
     RayStack<Real> reflected_, transmitted_, batch_;
     Color<Sum>* sums_ = nullptr;
     RayCounts* counts_ = nullptr;
+    std::vector<bool> too_deep_;  // by pixel, up to the last one of which the depth limit dropped a ray
 };
 
 template <typename Real, typename Observer>
@@ -83,6 +84,7 @@ bool Tracer<Real, Observer>::trace(PrimaryRays primary_rays, Color<Sum>* sums, R
     counts_ = &counts;
     reflected_.clear();
     transmitted_.clear();
+    too_deep_.clear();
     while (!stop.load(std::memory_order_relaxed)) {
         if (reflected_.size() + transmitted_.size() < batch_size && !primary_rays.done()) {
             // Whole rows of pixels, for where a row is cut depends on the number of lanes.
@@ -102,6 +104,7 @@ bool Tracer<Real, Observer>::trace(PrimaryRays primary_rays, Color<Sum>* sums, R
                 trace_group(batch_.group(first));
             }
         } else {
+            counts.pixels_too_deep += static_cast<std::uint64_t>(std::count(too_deep_.begin(), too_deep_.end(), true));
             return true;
         }
     }
@@ -167,13 +170,9 @@ Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const H
         surface.error = rounding_error(reach, hits.t);
         surface.lean = L(patch.curvature) * surface.error;
 
-        surface.pigment = color_at(*object.pigment, surface.point, [&] {
-            // A ray that is off meets the surface farther off the more it slants.
-            const L off = rays.t_min + patch.error_at(rays.reach) + hits.t * rays.spread;
-            const L across = off / abs(dot(surface.outward, rays.direction));
-            const L blur = L(2 * tie_epsilon<Real>) * reach + min(across, L(most_blur<Real>) * (reach + hits.t));
-            return coordinate_errors(surface.point, surface.outward, blur);
-        });
+        const L off = rays.t_min + patch.error_at(rays.reach) + hits.t * rays.spread;
+        const L blur = L(most_blur<Real>) * (reach + hits.t);
+        surface.pigment = color_at(*object.pigment, {surface.point, surface.outward, rays.direction, off, blur});
         const Finish<Real>& finish = object.finish;
         surface.ka = finish.ka;
         surface.kd = finish.kd;
@@ -206,19 +205,24 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
     // Shadow rays start on the viewer's side of the surface, as the reflected ray does.
     Rays<Real> shadow_rays{surface.point, surface.normal, surface.error,         hits.object,
                            hits.patch,    hits.inside,    L(least_spread<Real>), reach_of(surface.error)};
+    const L point_error = L(tie_epsilon<Real> / (4 * input_epsilon<Real>)) * surface.error;
     for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
         const Light<Real>& light = scene_.lights[i];
         const Vector<L> path = Vector<L>(light.position) - surface.point;
         const L distance = length(path);
-        const Vector<L> to_light = path * (one / distance);
+        const L nearness = one / distance;
+        const Vector<L> to_light = path * nearness;
         const L cosine = dot(surface.normal, to_light);
-        // A surface is not lit along itself.
-        const Mask<Real> faces = answers & (cosine > L(least_spread<Real>)) & ~light.grazes(hits.patch);
+        // A surface is not lit along itself, nor by a light at the very point.
+        const Mask<Real> faces =
+            answers & (cosine > L(least_spread<Real>)) & (distance > point_error) & ~light.grazes(hits.patch);
 
         Indices<Real> blocker = -1;
         if (any(faces)) {
             counts_->shadow += static_cast<std::uint64_t>(count(faces));
             shadow_rays.direction = to_light;
+            // It leads to the light from wherever the point really is.
+            shadow_rays.spread = min(L(least_spread<Real>) + surface.error * nearness, L(most_blur<Real>));
             blocker = scene_.blocker(shadow_rays, light, distance, faces);
         }
         const Mask<Real> lit = faces & (blocker < 0);
@@ -273,8 +277,7 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
     const L cosine = -dot(direction, surface.normal);
     const Vector<L> mirrored = normalize(direction + L(2) * cosine * surface.normal);
 
-    const L mirrored_spread =
-        min(group.rays.spread + L(2) * surface.lean + L(least_spread<Real>), L(most_blur<Real>));
+    const L mirrored_spread = min(group.rays.spread + L(2) * surface.lean + L(least_spread<Real>), L(most_blur<Real>));
 
     Vector<L> bent = mirrored;
     Mask<Real> bent_inside = hits.inside;
@@ -283,20 +286,23 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
         // Snell's law, with the ratio of the index on the ray's side to the index on the other: n1/n2 on the way in,
         // n2/n1 on the way out. Where it has no answer, the transmitted ray follows the mirror direction.
         const L eta = select(hits.inside, one / surface.eta, surface.eta);
-        // 1 - eta^2 (1 - cosine^2), without the difference of nearly equal numbers where eta is nearly 1.
-        const L cosine2 = (one - eta) * (one + eta) + eta * cosine * (eta * cosine);
+        // 1 - eta^2 (1 - cosine^2), without the difference of nearly equal numbers where eta is nearly 1. Where it is 0
+        // but for its error the ray is refracted along the surface.
+        const L exact_cosine2 = (one - eta) * (one + eta) + eta * cosine * (eta * cosine);
+        const L cosine_error = min(group.rays.spread + surface.lean, L(most_blur<Real>));
+        const L rounding = L(4 * tie_epsilon<Real>);
+        const L critical = eta * eta * (L(2) * cosine * cosine_error + rounding) + rounding;
+        const L cosine2 = select(abs(exact_cosine2) <= critical, zero, exact_cosine2);
         const Vector<L> refracted = eta * direction + (eta * cosine - sqrt(max(cosine2, zero))) * surface.normal;
         const L length2 = dot(refracted, refracted);
         // Of a ratio beyond all measure these may be no numbers, or 0.
-        const L cosine_error = group.rays.spread + surface.lean;
-        const L critical = eta * eta * (L(2) * cosine * cosine_error + L(4 * tie_epsilon<Real>)) +
-                           L(4 * tie_epsilon<Real>);
-        const Mask<Real> total = ~((cosine2 >= -critical) & (length2 > zero));
+        const Mask<Real> total = ~((cosine2 >= zero) & (length2 > zero));
         bent = select(total, mirrored, refracted * (one / sqrt(length2)));
         bent_inside = select(total, hits.inside, ~hits.inside);
-        const L steepest = L(2) * (one + eta) * (one + eta) / max(sqrt(max(cosine2, zero)), L(most_blur<Real>));
-        bent_spread = select(total, mirrored_spread,
-                             min(cosine_error * steepest + L(least_spread<Real>), L(most_blur<Real>)));
+        // In the plane of incidence it is more near the critical angle; across it, it is not.
+        const L steepest = L(2) * (one + eta);
+        bent_spread =
+            select(total, mirrored_spread, min(cosine_error * steepest + L(least_spread<Real>), L(most_blur<Real>)));
         observer_.total_reflection(group, transmits & total);
     }
 
@@ -342,6 +348,16 @@ Mask<Real> Tracer<Real, Observer>::worthwhile(const Group<Real>& group, RayKind 
     const Mask<Real> weighty = weight >= L(cutoff_);
     const Mask<Real> shallow = group.depth < Indices<Real>(max_depth_);
     observer_.dropped(group, kind, wanted, weighty, shallow);
+    const Mask<Real> too_deep = wanted & weighty & ~shallow;
+    if (any(too_deep)) [[unlikely]] {
+        for (unsigned lanes = too_deep.bits(); lanes != 0; lanes &= lanes - 1) {
+            const auto pixel = static_cast<std::size_t>(group.pixel[std::countr_zero(lanes)]);
+            if (pixel >= too_deep_.size()) {
+                too_deep_.resize(pixel + 1);
+            }
+            too_deep_[pixel] = true;
+        }
+    }
     return wanted & weighty & shallow;
 }
 

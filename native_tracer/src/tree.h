@@ -13,6 +13,7 @@
 #include <vector>
 
 #include "ray.h"
+#include "rounding.h"
 #include "search.h"
 #include "vector.h"
 
@@ -38,7 +39,8 @@ class BoxTest {
     // object that it is on, by less than t_min.
     BoxTest(const Rays<Real>& rays, Real growth, Real reach) {
         // Boxes are wider still, for what ties with a hit has to be come to.
-        const L error = L(std::max(32 * std::numeric_limits<Real>::epsilon(), Real(0x1p-40))) * (rays.reach + L(reach));
+        const L error =
+            L(std::max(32 * std::numeric_limits<Real>::epsilon(), 4096 * tie_epsilon<Real>)) * (rays.reach + L(reach));
         const L margin = L(growth) * (error + rays.t_min);
         const Vector<L> margins{margin, margin, margin};
         before_ = rays.origin + margins;

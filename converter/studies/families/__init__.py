@@ -21,6 +21,7 @@ FAMILIES: Mapping[str, Family] = {
     family.name: family
     for module in (
         size,
+        ties,
         distance,
         contact,
         coincidence,

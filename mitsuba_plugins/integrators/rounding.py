@@ -1,0 +1,89 @@
+"""Bounds of rounding errors, by which ties are decided, as in the native tracer.
+
+People place eyes, floors, boxes and tiles at round numbers, so that whole rows of rays meet edges exactly. What then
+decides are two numbers that are equal but for their rounding errors, and count as equal: each comparison knows a bound
+of the errors of its two numbers, and what happens at a tie is a rule of the format. A ray's origin may be off by its
+`t_min`, its direction by its `spread`, a surface by `surface_error`; at distance t a ray is off by t_min + t spread.
+The spread grows from bounce to bounce; where it exceeds `most_blur`, nothing is known that a rule could be applied to.
+
+Higham, Accuracy and Stability of Numerical Algorithms, 2nd edition, 2002, section 3.3: running error analysis.
+"""
+
+import math
+from typing import Any
+
+import drjit as dr
+import numpy as np
+
+from mitsuba_plugins.arithmetic import quotient
+
+
+def epsilon(number: Any) -> float:
+    """The unit of the bounds: the distance from 1 to the next double. 0 in single precision, which decides no ties."""
+    return 2.0**-52 if dr.type_v(number) == dr.VarType.Float64 else 0.0
+
+
+def least_spread(number: Any) -> float:
+    """Some eight roundings, of a unit vector's component and of its products with others."""
+    return 4 * epsilon(number)
+
+
+def most_blur(number: Any) -> float:
+    """The square root of epsilon."""
+    return math.sqrt(epsilon(number))
+
+
+def input_error(number: float) -> float:
+    """Of a number in a file: a whole one is meant as it stands, any other is a decimal that was rounded to a double."""
+    return 0.0 if number == math.floor(number) else 2.0**-52 * abs(number)
+
+
+def camera_errors(types: Any, sensor: Any) -> tuple[Any, Any]:
+    """How far the eye of a `pinhole` may be off, and the directions from it besides their roundings (Float)."""
+    if not hasattr(sensor, "eye"):
+        return types.Float(0), types.Float(0)
+    eye, look_at = (np.ravel(point).tolist() for point in (sensor.eye, sensor.look_at))
+    error, other = (max(map(input_error, point)) for point in (eye, look_at))
+    spread = min((error + other) / math.dist(eye, look_at), most_blur(types.Float))
+    return dr.opaque(types.Float, error), dr.opaque(types.Float, spread)
+
+
+def surface_error(sphere: Any, v: Any, w: Any, reach: Any) -> Any:
+    """How far a surface may be off where rays whose coordinates are no larger than `reach` are compared with it.
+
+    Args:
+        sphere: whether it is one.
+        v: its centre, or a plane's unit normal (Vector3).
+        w: its radius, or a plane's offset (Float).
+        reach: Float.
+
+    """
+    number = epsilon(w)
+    largest = dr.maximum(dr.maximum(dr.abs(v.x), dr.abs(v.y)), dr.abs(v.z))
+    whole = w == dr.floor(w)
+    along_axis = dr.select(whole, 0, number * dr.abs(w))
+    slanting = 4 * number * (dr.abs(w) + reach)
+    plane = dr.select(largest == 1, along_axis, slanting)
+    meant = whole & (v.x == dr.floor(v.x)) & (v.y == dr.floor(v.y)) & (v.z == dr.floor(v.z))
+    return dr.select(sphere, dr.select(meant, 0, number * (w + largest)), plane)
+
+
+def coordinate_errors(p: Any, n: Any, d: Any, t: Any, off: Any) -> Any:
+    """How far each coordinate of a point of a surface may be off: a plane along the axes fixes one.
+
+    Args:
+        p: the point (Point3).
+        n: the unit normal there (Vector3).
+        d: direction of the ray that has met it.
+        t: how far that ray came.
+        off: how far ray and surface may be off from one another; the point is, the more the ray slants.
+
+    """
+    reach = dr.maximum(dr.maximum(dr.abs(p.x), dr.abs(p.y)), dr.abs(p.z))
+    along = dr.fmin(quotient(off, dr.abs(dr.dot(n, d))), most_blur(t) * (reach + t))
+
+    def error(coordinate: Any, normal: Any, slope: Any) -> Any:
+        rounding = 2 * epsilon(t) * dr.abs(coordinate)
+        return rounding + dr.select(dr.abs(normal) < 1, off + dr.abs(slope) * along, 0)
+
+    return type(n)(*map(error, p, n, d))
