@@ -188,6 +188,18 @@ def test_edge_belongs_to_the_lower_plane(precision):
     assert hit["plane"] == 0
 
 
+def test_an_edge_belongs_to_the_lower_plane_whatever_is_rounded(precision):
+    if precision == "float":
+        pytest.skip("decides no ties")
+    for i in range(50):
+        x, y = round(0.1 + 0.07 * i, 2), round(0.3 + 0.11 * i, 2)
+        edge = box((-1, -1, -1), (x, y, 1))
+        hit = hit_of([edge], (round(x + 0.3, 2), round(y + 0.7, 2), 0), (-0.3, -0.7, 0), precision)
+        assert (hit["plane"], hit["entering"]) == (3, True)
+        hit = hit_of([edge], (round(x - 0.3, 2), round(y - 0.7, 2), 0), (0.3, 0.7, 0), precision)
+        assert (hit["plane"], hit["entering"]) == (3, False)
+
+
 def test_normals_of_any_length(precision):
     planes = [
         tuple(c * factor for c in plane) for plane, factor in zip(BOX, (1e-200, 1e200, 7, 1e-30, 1e30, 3), strict=True)

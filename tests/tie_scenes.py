@@ -235,11 +235,12 @@ def _light_near_a_side() -> Scene:
 
 
 def _ball_in_floor() -> Scene:
-    """It stands upright on the floor, where rays meet both, and the lights above lean a little outward."""
-    bodies: list[Body] = [(floor(0.3), WHITE, MATTE), (sphere((0.1, 0.3, 0.2), 5.0), RED, MATTE)]
-    places = [(5.1001, 0.2), (4.10008, 3.20006), (4.10008, -2.80006), (3.10006, 4.20008), (3.10006, -3.80008)]
-    lights = [light((x, 10.3, z)) for x, z in places]
-    return scene(view((10.1, 6.3, 0.2), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0)), bodies, lights)
+    """It stands upright on the floor, where rays meet both, and the lights above lean outward by a thousandth."""
+    x, y, z = 122.76, 0.27, -166.1
+    bodies: list[Body] = [(floor(y), WHITE, MATTE), (sphere((x, y, z), 5.0), RED, MATTE)]
+    places = [(5.01, 0.0), (4.008, 3.006), (4.008, -3.006), (3.006, 4.008), (3.006, -4.008)]
+    lights = [light((round(x + right, 3), round(y + 10, 3), round(z + near, 3))) for right, near in places]
+    return scene(view((x + 10, round(y + 6, 2), z), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0)), bodies, lights)
 
 
 def _terminator() -> Scene:
