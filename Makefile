@@ -52,7 +52,7 @@ figures: .venv/.installed
 fuzz: .venv/.fuzzer
 	$(BIN)/python fuzzing/fuzz_scenes.py $(SECONDS)
 
-mutants: .venv/.installed
+mutants: .venv/.checkers
 	$(BIN)/python benchmarks/mutants.py
 
 stability: .venv/.installed
