@@ -354,7 +354,7 @@ def test_drjit_exp2_in_double_precision_overflows_where_it_should_underflow(mi):
 @pytest.mark.parametrize("sine", [0.28, 0.352, 0.6, 0.8, 0.936, 0.96])
 def test_at_the_critical_angle_a_ray_is_refracted_along_the_surface(mi, sine):
     """Sines of Pythagorean triples, and frames of whole numbers."""
-    from mitsuba_plugins.integrators.rays import refract
+    from mitsuba_plugins.intersection.rays import refract
 
     cosine = round(math.sqrt(1 - sine**2), 3)
     frames = np.array(
