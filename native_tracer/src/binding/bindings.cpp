@@ -7,6 +7,8 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
@@ -70,6 +72,17 @@ int add_polyhedron(SceneDescription& scene, int pigment, int finish, Planes plan
     }
     return append(scene.objects,
                   whitted::ObjectDescription{pigment, finish, whitted::PolyhedronDescription{std::move(planes)}});
+}
+
+int add_quadric(SceneDescription& scene, int pigment, int finish, const std::array<double, 10>& coefficients) {
+    check_index(pigment, scene.pigments.size(), "pigment");
+    check_index(finish, scene.finishes.size(), "finish");
+    finite(coefficients, "a quadric");
+    if (std::all_of(coefficients.begin(), coefficients.end() - 1, [](double number) { return number == 0; })) {
+        throw std::invalid_argument("a quadric's numbers but the last are all 0");
+    }
+    return append(scene.objects,
+                  whitted::ObjectDescription{pigment, finish, whitted::QuadricDescription{coefficients}});
 }
 
 int add_texmap(SceneDescription& scene, int width, int height, const TexelBuffer& texels, const Quadruple& p0,
@@ -164,11 +177,14 @@ void bind_scene(nb::module_& module) {
                 }
                 return add_polyhedron(scene, pigment, finish, std::move(planes));
             },
-            "pigment"_a, "finish"_a, "planes"_a);
+            "pigment"_a, "finish"_a, "planes"_a)
+        .def("add_quadric", &add_quadric, "pigment"_a, "finish"_a, "coefficients"_a,
+             "Add a quadric, and return its index; the coefficients are A to J, inside where\n"
+             "A x^2 + B y^2 + C z^2 + D x y + E x z + F y z + G x + H y + I z + J <= 0.");
 }
 
 NB_MODULE(_core, module) {
-    module.doc() = "The native tracer: Whitted's shading of spheres and convex polyhedra.";
+    module.doc() = "The native tracer: Whitted's shading of spheres, convex polyhedra and quadrics.";
     bind_scene(module);
     bind_render(module);
     bind_halfspaces(module);

@@ -15,15 +15,15 @@ template <typename Real>
 struct Contact {
     int object, primitive;
     Vector<Real> outward;  // the surface's unit normal there
+    Real curvature;        // by how much it turns along a unit of length, at most
     bool flat;             // it is part of a plane
     bool on_body;          // the point lies on the object, and not only in the plane of a face beside the face
 
-    // Whether rays that lead to the point cross the object there, and no sooner: a plane wherever they do, a sphere
-    // where they reach the point from within, or from without by its near side.
+    // Whether rays that lead to the point cross the object there, and no sooner: a plane wherever they do; of a surface
+    // that they meet twice, once from without and once from within, it is the place of the same kind.
     Mask<Real> is_at(const Crossing<Real>& crossing, const Vector<Lanes<Real>>& direction) const {
-        const Mask<Real> arrives =
-            crossing.inside | (dot(Vector<Lanes<Real>>(outward), direction) < Lanes<Real>(Real(0)));
-        return (crossing.primitive == Indices<Real>(primitive)) & arrives;
+        const Mask<Real> from_without = dot(Vector<Lanes<Real>>(outward), direction) < Lanes<Real>(Real(0));
+        return (crossing.primitive == Indices<Real>(primitive)) & (from_without ^ crossing.inside);
     }
 };
 

@@ -10,6 +10,7 @@
 
 #include "shapes/contact.h"
 #include "shapes/crossing.h"
+#include "shapes/sight.h"
 #include "tracing/camera.h"
 #include "tracing/description.h"
 #include "tracing/incidence.h"
@@ -42,21 +43,6 @@ Plane<Real> plane_of(const Quadruple& plane) {
     return {normal / length(normal), offset, slack * std::abs(offset), slack};
 }
 
-// A convex polyhedron has no sight of its own: it is tested from anywhere.
-template <typename Real>
-struct AlwaysInSight {
-    template <typename... Arguments>
-    explicit AlwaysInSight(const Arguments&...) {}
-    template <typename... Arguments>
-    bool may_be_hit(const Arguments&...) const {
-        return true;
-    }
-    template <typename... Arguments>
-    bool may_block(const Arguments&...) const {
-        return true;
-    }
-};
-
 template <typename Real>
 class ConvexPolyhedron {
  public:
@@ -78,12 +64,7 @@ class ConvexPolyhedron {
 
     int object() const { return object_; }
     int piece(int primitive) const { return primitive - first_primitive_; }
-    Real curvature() const { return 0; }
-    template <typename T>
-    T error_at(int primitive, const T& reach) const {
-        const Plane<Real>& plane = plane_at(primitive);
-        return T(plane.error) + T(plane.error_by_reach) * reach;
-    }
+    Real error_at(int primitive, Real reach, const Vector<Real>&) const { return error_of(primitive, reach); }
 
     // The ray is inside all half-spaces between the largest t at which it enters one and the smallest at which it
     // leaves one. Planes may be few and close no volume: either bound may stay infinite. Haines, "Fast Ray-Convex
@@ -141,7 +122,7 @@ class ConvexPolyhedron {
             const L slope = dot(normal, rays.direction);
             const L height = dot(normal, rays.origin) + L(plane.offset);
             const Indices<Real> primitive = first_primitive_ + k;
-            const L error = rays.t_min + error_at(first_primitive_ + k, rays.reach);
+            const L error = rays.t_min + error_of(first_primitive_ + k, rays.reach);
             const L t = select(abs(height) <= error, zero, -height / slope);
             const L t_error = (error + abs(t) * rays.spread) / abs(slope);
 
@@ -171,7 +152,7 @@ class ConvexPolyhedron {
         for (int k = first_primitive_; k < hit; ++k) {
             const Plane<Real>& plane = plane_at(k);
             const Real slope = dot(plane.normal, direction);
-            const Real error = blur(rays, lane, error_at(k, rays.reach[lane]), t) + t_error * std::abs(slope);
+            const Real error = blur(rays, lane, error_of(k, rays.reach[lane]), t) + t_error * std::abs(slope);
             const bool meets = inside ? slope > rays.spread[lane] : slope < -rays.spread[lane];
             if (meets && std::abs(dot(plane.normal, p) + plane.offset) <= error &&
                 !(starts_here && rays.primitive[lane] == k)) {
@@ -186,8 +167,8 @@ class ConvexPolyhedron {
     SurfacePoint<Real> surface_at(int primitive, const Vector<L>& near, const Rays<Real>& rays, Mask<Real>) const {
         const Plane<Real>& plane = plane_at(primitive);
         const Vector<L> normal(plane.normal);
-        return {near - (dot(normal, near) + L(plane.offset)) * normal, normal, error_at(primitive, rays.reach),
-                curvature()};
+        return {near - (dot(normal, near) + L(plane.offset)) * normal, normal, error_of(primitive, rays.reach),
+                L(Real(0))};
     }
 
     template <typename Visit>
@@ -195,7 +176,7 @@ class ConvexPolyhedron {
         for (int k = 0; k < plane_count(); ++k) {
             const auto index = static_cast<std::size_t>(k);
             if (lies_on(polyhedron.planes[index], point)) {
-                visit(Contact<Real>{object_, first_primitive_ + k, planes_[index].normal, true,
+                visit(Contact<Real>{object_, first_primitive_ + k, planes_[index].normal, Real(0), true,
                                     lies_within(polyhedron.planes, point)});
             }
         }
@@ -254,6 +235,13 @@ class ConvexPolyhedron {
                 return;
             }
         }
+    }
+
+    // How far a primitive may be off where rays of that reach are compared with it, see Rays.
+    template <typename T>
+    T error_of(int primitive, const T& reach) const {
+        const Plane<Real>& plane = plane_at(primitive);
+        return T(plane.error) + T(plane.error_by_reach) * reach;
     }
 
     int plane_count() const { return static_cast<int>(planes_.size()); }

@@ -12,11 +12,10 @@
 //     intersect_by_rules        likewise, with ties decided by the format's rules
 //     primitive_met             of the primitives that tie where a ray has hit it, the first
 //     surface_at                a point near a primitive moved onto it, so that its error does not grow with the
-//     distance
-//                               travelled, and the normal
+//                               distance travelled, and the normal
 //     outward_at                the outward unit normal alone, near a point
-//     error_at                  how far a primitive may be off where rays of that reach are compared with it, see Rays
-//     curvature                 by how much the normal turns along a unit of length
+//     error_at                  how far a primitive may be off near a point, where rays of that reach are compared with
+//                               it, see Rays
 //     for_each_contact          the primitives that a point lies on
 //     Sight                     the shape as seen from one point, which tells rays through the point that miss it:
 //                               may_be_hit by rays from the point; may_block rays that lead to it
@@ -34,6 +33,7 @@
 #include <vector>
 
 #include "shapes/convex_polyhedron.h"
+#include "shapes/quadric.h"
 #include "shapes/sphere.h"
 #include "tracing/description.h"
 
@@ -169,7 +169,7 @@ class ShapeLists {
 };
 
 template <typename Real>
-using Shapes = ShapeLists<Real, Sphere<Real>, ConvexPolyhedron<Real>>;
+using Shapes = ShapeLists<Real, Sphere<Real>, ConvexPolyhedron<Real>, Quadric<Real>>;
 
 // The shapes outside the tree, as seen from one point.
 template <typename Real>

@@ -7,6 +7,7 @@
 
 #include "shapes/contact.h"
 #include "shapes/crossing.h"
+#include "shapes/sight.h"
 #include "tracing/camera.h"
 #include "tracing/description.h"
 #include "tracing/incidence.h"
@@ -41,11 +42,7 @@ class Sphere {
 
     int object() const { return object_; }
     int piece(int) const { return -1; }
-    Real curvature() const { return 1 / radius_; }
-    template <typename T>
-    T error_at(int, const T&) const {
-        return error_;
-    }
+    Real error_at(int, Real, const Vector<Real>&) const { return error_; }
 
     // With g = center - origin, the roots of t^2 - 2 (g.d) t + g.g - r^2 = 0. The discriminant is r^2 - |g - (g.d)
     // d|^2, which does not cancel for a small sphere far away, and the roots are q = g.d +- sqrt(...), of the sign that
@@ -124,14 +121,14 @@ class Sphere {
         if (any(lost)) [[unlikely]] {
             outward = select(lost, select(inside, rays.direction, -rays.direction), outward);
         }
-        return {center + L(radius_) * outward, outward, error_, curvature()};
+        return {center + L(radius_) * outward, outward, error_, 1 / radius_};
     }
 
     template <typename Visit>
     void for_each_contact(const SphereDescription& sphere, const Triple& point, Visit visit) const {
         if (lies_on(sphere, point)) {
             const Vector<Real> arm = vector_of<Real>(in_range(direction(sphere.center, point)));
-            visit(Contact<Real>{object_, primitive_, normalize(arm), false, true});
+            visit(Contact<Real>{object_, primitive_, normalize(arm), 1 / radius_, false, true});
         }
     }
 
@@ -147,44 +144,30 @@ class Sphere {
     int object_, primitive_;
 };
 
-// A sphere as seen from a point, such as the eye or a light: tells most lines through the point that miss the sphere,
-// for less than half of what intersect() costs. Such a line, of direction d, passes the centre at a distance whose
-// square is g.g - (g.d)^2, with g = center - point. That difference cancels for a small sphere far away, so it only
-// counts where it is larger than its error.
+// A sphere as seen from a point.
 template <typename Real>
-class SphereSight {
+class SphereSight : public BallInSight<Real> {
  public:
     using L = Lanes<Real>;
+    using Ball = BallInSight<Real>;
 
     SphereSight(const Sphere<Real>& sphere, const Vector<Real>& point)
-        : center_(sphere.center_),
-          g_(sphere.center_ - point),
-          outside2_((1 - slack) * dot(g_, g_) - (1 + slack) * sphere.reach2_),
-          inside2_((1 - slack) * sphere.reach2_),
-          encloses_((1 + slack) * dot(g_, g_) < inside2_) {}
-
-    bool may_be_hit(const Vector<L>& direction) const { return any(may_meet(direction, L(Real(0)))); }
+        : Ball(sphere.center_, sphere.reach2_, point),
+          center_(sphere.center_),
+          inside2_((1 - Ball::slack) * sphere.reach2_),
+          encloses_((1 + Ball::slack) * dot(Ball::to_center(), Ball::to_center()) < inside2_) {}
 
     bool may_block(const Rays<Real>& rays, L distance, Mask<Real> wanted) const {
         if (encloses_) {
             const Vector<L> g = Vector<L>(center_) - rays.origin;
             return any(wanted & ~(dot(g, g) < L(inside2_)));
         }
-        // The rays pass the point at some distance, for their directions are rounded.
-        return any(wanted & may_meet(rays.direction, L(slack) * distance * distance));
+        return Ball::may_block(rays, distance, wanted);
     }
 
  private:
-    static constexpr Real slack = 128 * std::numeric_limits<Real>::epsilon();
-
-    Mask<Real> may_meet(const Vector<L>& direction, L error2) const {
-        const L closest = dot(Vector<L>(g_), direction);
-        return ~(closest * closest + error2 < L(outside2_));  // also where a square is too large for a number
-    }
-
-    Vector<Real> center_, g_;
-    Real outside2_;  // g.g - r^2, and less by more than the error
-    Real inside2_;   // r^2, likewise
+    Vector<Real> center_;
+    Real inside2_;   // r^2, and less by more than the error
     bool encloses_;  // the point lies in the sphere, and a ball holds all between two of its points
 };
 

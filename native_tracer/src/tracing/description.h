@@ -58,7 +58,12 @@ struct PolyhedronDescription {
     std::vector<Quadruple> planes;  // a, b, c, d of a x + b y + c z + d <= 0
 };
 
-using ShapeDescription = std::variant<SphereDescription, PolyhedronDescription>;
+struct QuadricDescription {
+    // A to J of A x^2 + B y^2 + C z^2 + D x y + E x z + F y z + G x + H y + I z + J <= 0
+    std::array<double, 10> coefficients;
+};
+
+using ShapeDescription = std::variant<SphereDescription, PolyhedronDescription, QuadricDescription>;
 
 struct ObjectDescription {
     int pigment, finish;
