@@ -1,0 +1,205 @@
+"""A quadric along its principal axes, in floating point: distances, margins, and places."""
+
+import math
+from dataclasses import dataclass
+from fractions import Fraction
+from functools import lru_cache
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from converter.scene.model import Quadric, Vector
+from converter.shapes.kind import Intersection
+from converter.shapes.quadric_form import Form, binary_form, kind_of, nearest
+
+Floats = NDArray[np.float64]
+
+
+@dataclass(frozen=True, eq=False)
+class Frame:
+    """f at `origin + axes @ y` is, but for a positive factor, sum(values y^2) + 2 slope y_3 + constant.
+
+    Attributes:
+        origin: (3,) the centre; of what has none the vertex, or of its axis the point nearest the scene's origin.
+        axes: (3, 3), in its columns unit vectors.
+        values: (3,) eigenvalues, those that are positive, then those that are negative, then zeros.
+        slope: 0, or negative, and then the last value and the constant are 0.
+        constant: 0 where the centre is on the surface.
+
+    """
+
+    origin: Floats
+    axes: Floats
+    values: Floats
+    slope: float
+    constant: float
+
+    def of(self, p: ArrayLike) -> Floats:
+        """Points (..., 3) in its coordinates."""
+        return np.asarray((np.asarray(p) - self.origin) @ self.axes)
+
+    def at(self, y: Floats) -> Floats:
+        """The value of f at points (..., 3) in its coordinates."""
+        return np.asarray((self.values * y * y).sum(axis=-1) + 2 * self.slope * y[..., 2] + self.constant)
+
+    def half_gradient(self, y: Floats) -> Floats:
+        """Half the gradient, (..., 3), likewise."""
+        return np.asarray(self.values * y + self.slope * np.array((0.0, 0.0, 1.0)))
+
+    @property
+    def semi_axes(self) -> Floats:
+        """(3,) where each axis meets the surface, or its conjugate one; 0 where it does not."""
+        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
+            return np.where(self.values != 0, np.sqrt(np.abs(self.constant / self.values)), 0.0)
+
+    @property
+    def around_middle(self) -> tuple[Vector, Vector]:
+        """The box around its origin, and to the ends of the axes."""
+        reach = np.sqrt(((self.axes * self.semi_axes) ** 2).sum(axis=1))
+        (a, b, c), (d, e, f) = (self.origin - reach).tolist(), (self.origin + reach).tolist()
+        return (a, b, c), (d, e, f)
+
+    @property
+    def inside(self) -> Vector:
+        """A point inside, about as far from the surface as the middle is."""
+        y = np.zeros(3)
+        if self.slope:
+            y[2] = -self.slope / (np.abs(self.values).max() or -self.slope)
+        elif self.constant >= 0:
+            k = int(self.values.argmin())
+            y[k] = math.sqrt(2 * self.constant / -self.values[k]) or float(np.abs(self.origin).max()) or 1.0
+        a, b, c = (self.origin + self.axes @ y).tolist()
+        return (a, b, c)
+
+
+@lru_cache(maxsize=4096)
+def frame_of(shape: Quadric) -> Frame:
+    """Of a quadric that has a surface.
+
+    Directions and eigenvalues are those of doubles; which of them are 0, and whether there is a centre, is exact, and
+    what is left of f about the origin is computed without cancellation.
+    """
+    (positive, negative), (more, fewer) = kind_of(shape)[2:]
+    form = binary_form(shape)
+    size = max(map(abs, (*(x for row in form.matrix for x in row), Fraction(0)))) or max(map(abs, form.half_slope))
+    values, axes = np.linalg.eigh([[nearest(x / size) for x in row] for row in form.matrix])
+    values = values[::-1]
+    least = 2.0**-64  # where roundings have left less, it would be of any sign
+    values = np.concatenate(
+        [
+            np.maximum(values[:positive], least),
+            np.zeros(3 - positive - negative),
+            np.minimum(values[3 - negative :], -least),
+        ]
+    )
+    order = [*range(positive), *range(3 - negative, 3), *range(positive, 3 - negative)]
+    values, axes = values[order], axes[:, ::-1][:, order]
+    rank = positive + negative
+    origin = np.zeros(3)
+    for _ in range(3):  # each step adds the digits that the one before could not
+        slopes = axes.T @ _half_gradient(form, origin, size)
+        origin = origin - axes[:, :rank] @ (slopes[:rank] / values[:rank])
+    constant = nearest(form.at([Fraction(x) for x in _finite(origin)]) / size)
+    if more + fewer == rank + 2:
+        axes, slope = _along_slope(axes, rank, _half_gradient(form, origin, size))
+        origin = origin - axes[:, 2] * (constant / slope / 2)
+        return Frame(origin, axes, values, slope, 0.0)
+    sign = (more - positive) - (fewer - negative)
+    return Frame(origin, axes, values, 0.0, sign * abs(constant))
+
+
+def _half_gradient(form: Form, p: Floats, size: Fraction) -> Floats:
+    return np.array([nearest(x / size) for x in form.half_gradient([Fraction(x) for x in _finite(p)])])
+
+
+def _finite(p: Floats) -> list[float]:
+    """What has numbers beyond those of doubles is nowhere in particular."""
+    return np.where(np.isfinite(p), p, 0.0).tolist()  # type: ignore[no-any-return]
+
+
+def _along_slope(axes: Floats, rank: int, gradient: Floats) -> tuple[Floats, float]:
+    """The axes, those that have no eigenvalue turned until the last is where f falls, and how steeply it does."""
+    rest = axes[:, rank:]
+    along = -rest @ (rest.T @ gradient)
+    slope = float(np.linalg.norm(along))
+    last = along / slope
+    if rank == 2:
+        return np.column_stack([axes[:, :2], last]), -slope
+    first = axes[:, 0] if rank == 1 else np.eye(3)[int(np.abs(last).argmin())]
+    first = first - (first @ last) * last
+    first = first / np.linalg.norm(first)
+    return np.column_stack([first, np.cross(last, first), last]), -slope
+
+
+# ---- Rays ------------------------------------------------------------------------------------------------------------
+
+
+def intersections(shape: Quadric, origin: Floats, direction: Floats) -> list[Intersection]:
+    """Where a line crosses it, at most twice; where it comes nearest to that, if it does not."""
+    frame = frame_of(shape)
+    y, d = frame.of(origin), frame.axes.T @ direction
+    a, b, c = _along(frame, y, d)
+    found = []
+    for t in roots(a, b, c) or ([-b / a] if a else []):
+        gradient = frame.half_gradient(y + t * d)
+        length = float(np.linalg.norm(gradient))
+        found.append(Intersection(t, float(gradient @ d) / length if length else 0.0))
+    return found
+
+
+def silhouette_margin(shape: Quadric, origin: Floats, direction: Floats) -> float:
+    """From where along the line f is least, or largest, to the surface: the gradient is at a right angle to it."""
+    frame = frame_of(shape)
+    y, d = frame.of(origin), frame.axes.T @ direction
+    a, b, _ = _along(frame, y, d)
+    return math.inf if a == 0 else _distance(frame, y - b / a * d)
+
+
+def surface_margin(shape: Quadric, p: Floats, on_it: bool) -> float:
+    """Along the gradient."""
+    frame = frame_of(shape)
+    return math.inf if on_it else _distance(frame, frame.of(p))
+
+
+def radius_of_curvature(shape: Quadric, p: Floats) -> float:
+    """At least this at a point of the surface: a curve along it turns by no more than |value| / |half gradient|."""
+    frame = frame_of(shape)
+    most = float(np.abs(frame.values).max())
+    return float(np.linalg.norm(frame.half_gradient(frame.of(p)))) / most if most else math.inf
+
+
+def nearest_bound(shape: Quadric, p: ArrayLike) -> float:
+    """No point of the surface is nearer: on the way to it f changes by |f|, and no faster than the gradient lets it."""
+    frame = frame_of(shape)
+    y = frame.of(p)
+    gradient = float(np.linalg.norm(frame.half_gradient(y)))
+    most, value = float(np.abs(frame.values).max()), abs(float(frame.at(y)))
+    fall = gradient + math.sqrt(gradient * gradient + most * value)
+    return value / fall if fall else 0.0
+
+
+def _along(frame: Frame, y: Floats, d: Floats) -> tuple[float, float, float]:
+    """Of f at y + t d = a t^2 + 2 b t + c."""
+    return float(frame.values @ (d * d)), float(frame.half_gradient(y) @ d), float(frame.at(y))
+
+
+def roots(a: float, b: float, c: float) -> list[float]:
+    """Of a t^2 + 2 b t + c = 0, ascending; none of them loses digits to another."""
+    rest = b * b - a * c
+    if rest < 0:
+        return []
+    q = -(b + math.copysign(math.sqrt(rest), b))
+    found = [q / a] if a else []
+    return sorted(found + ([c / q] if q else []))
+
+
+def _distance(frame: Frame, y: Floats) -> float:
+    """From a point to the surface along the gradient; where that does not meet it, by how steep f is."""
+    gradient = frame.half_gradient(y)
+    length = float(np.linalg.norm(gradient))
+    value = float(frame.at(y))
+    if length == 0:
+        most = float(np.abs(frame.values).max())
+        return math.sqrt(abs(value) / most) if most else math.inf
+    found = roots(*_along(frame, y, gradient / length))
+    return min(map(abs, found)) if found else abs(value) / (2 * length)
