@@ -3,7 +3,7 @@
 A quadric is f(p) = p M p + 2 h p + j, inside where f <= 0, and its 4x4 matrix is ((M, h), (h, j)). How many eigenvalues
 of both are positive and how many negative tells all kinds apart, whatever the place, the size and the factor
 (Sylvester's law of inertia). The numbers are taken as the decimals that a file has for them: (0.3 x + 0.1 y)^2 is a
-square there, and in doubles is not.
+square there, and is none in doubles. Where the doubles have fewer eigenvalues, as a program's may, they are taken.
 """
 
 import math
@@ -48,6 +48,7 @@ class Kind(NamedTuple):
         name: "cone", or "complement of a cone"; empty where there is no surface.
         flaw: why there is none, as the end of a sentence.
         matrix, whole: the signs of the 3x3 and of the 4x4 matrix.
+        form: the numbers of which that is true.
 
     """
 
@@ -55,6 +56,7 @@ class Kind(NamedTuple):
     flaw: str
     matrix: Signs
     whole: Signs
+    form: "Form"
 
 
 class Form(NamedTuple):
@@ -91,18 +93,23 @@ def _form(numbers: Sequence[Fraction]) -> Form:
 @lru_cache(maxsize=4096)
 def kind_of(shape: Quadric) -> Kind:
     """What it is; its numbers are finite."""
-    form = decimal_form(shape)
+    return min(
+        (_kind(form(shape)) for form in (decimal_form, binary_form)), key=lambda kind: sum(kind.matrix + kind.whole)
+    )
+
+
+def _kind(form: Form) -> Kind:
     matrix = _signs(form.matrix)
     rows = [[*row, h] for row, h in zip(form.matrix, form.half_slope, strict=True)]
     whole = _signs([*rows, [*form.half_slope, form.constant]])
     if name := KINDS.get((matrix, whole)):
-        return Kind(name, "", matrix, whole)
+        return Kind(name, "", matrix, whole, form)
     if name := KINDS.get((matrix[::-1], whole[::-1])):
         article = "an" if name[0] == "e" else "" if name.endswith("planes") else "a"
-        return Kind(" ".join(filter(None, ("complement of", article, name))), "", matrix, whole)
+        return Kind(" ".join(filter(None, ("complement of", article, name))), "", matrix, whole, form)
     positive, negative = whole
     flaw = EMPTY.get((matrix, whole)) or ("no point is inside" if positive > negative else "every point is inside")
-    return Kind("", flaw, matrix, whole)
+    return Kind("", flaw, matrix, whole, form)
 
 
 def _signs(matrix: Rows) -> Signs:
@@ -132,11 +139,12 @@ def _signs(matrix: Rows) -> Signs:
 @lru_cache(maxsize=4096)
 def simplest(shape: Quadric) -> Shape:
     """A ball, a half-space, or the intersection of two, where it is one of them; else itself."""
-    match kind_of(shape).name:
+    kind = kind_of(shape)
+    match kind.name:
         case "ellipsoid":
-            return _ball(decimal_form(shape)) or shape
+            return _ball(kind.form) or shape
         case "parallel planes":
-            return _slab(decimal_form(shape)) or shape
+            return _slab(kind.form) or shape
         case "half-space":
             a, b, c, d = shape.coefficients[6:]
             return Polyhedron(((a, b, c, d),))
@@ -212,17 +220,17 @@ def nearest(x: Fraction) -> float:
     try:
         return float(x)
     except OverflowError:
-        return math.copysign(math.inf, x)
+        return math.inf if x > 0 else -math.inf
 
 
 def root_above(x: Fraction) -> Fraction:
-    """The square root, or a number that is larger by a 2^100th of it at most."""
+    """The square root, if it is rational; else a number that is larger by a 2^100th of it at most."""
     if x <= 0:
         return Fraction(0)
-    half = 104 - (x.numerator.bit_length() - x.denominator.bit_length()) // 2
-    scaled = x * Fraction(4) ** half
-    root = math.isqrt(int(scaled))
-    return (root + (root * root != scaled)) / Fraction(2) ** half
+    square = x.numerator * x.denominator
+    shift = max(0, 104 - square.bit_length() // 2)
+    root = math.isqrt(square << 2 * shift)
+    return Fraction(root + (root * root != square << 2 * shift), x.denominator << shift)
 
 
 def _below(x: Fraction) -> float:

@@ -73,13 +73,14 @@ class Frame:
 
 
 @lru_cache(maxsize=4096)
+@np.errstate(all="ignore")  # numbers may be as large as they like
 def frame_of(shape: Quadric) -> Frame:
     """Of a quadric that has a surface.
 
     Directions and eigenvalues are those of doubles; which of them are 0, and whether there is a centre, is exact, and
     what is left of f about the origin is computed without cancellation.
     """
-    (positive, negative), (more, fewer) = kind_of(shape)[2:]
+    _, _, (positive, negative), (more, fewer), _ = kind_of(shape)
     form = binary_form(shape)
     size = max(map(abs, (*(x for row in form.matrix for x in row), Fraction(0)))) or max(map(abs, form.half_slope))
     values, axes = np.linalg.eigh([[nearest(x / size) for x in row] for row in form.matrix])
