@@ -140,8 +140,11 @@ def intersections(shape: Quadric, origin: Floats, direction: Floats) -> list[Int
     frame = frame_of(shape)
     y, d = frame.of(origin), frame.axes.T @ direction
     a, b, c = _along(frame, y, d)
+    crossed = roots(a, b, c)
+    if not crossed:
+        return [Intersection(-b / a, 0.0)] if a else []
     found = []
-    for t in roots(a, b, c) or ([-b / a] if a else []):
+    for t in crossed:
         gradient = frame.half_gradient(y + t * d)
         length = float(np.linalg.norm(gradient))
         found.append(Intersection(t, float(gradient @ d) / length if length else 0.0))
@@ -149,11 +152,25 @@ def intersections(shape: Quadric, origin: Floats, direction: Floats) -> list[Int
 
 
 def silhouette_margin(shape: Quadric, origin: Floats, direction: Floats) -> float:
-    """From where along the line f is least, or largest, to the surface: the gradient is at a right angle to it."""
+    """To the next parallel that touches the surface.
+
+    Where f is least, or largest, along the line, its gradient is at a right angle to that. If the line is moved by s
+    that way, the least f, or the largest, is a polynomial of s, and 0 where the line touches.
+    """
     frame = frame_of(shape)
     y, d = frame.of(origin), frame.axes.T @ direction
     a, b, _ = _along(frame, y, d)
-    return math.inf if a == 0 else _distance(frame, y - b / a * d)
+    if a == 0:
+        return math.inf
+    y = y - b / a * d
+    gradient = frame.half_gradient(y)
+    length, value = float(np.linalg.norm(gradient)), float(frame.at(y))
+    if length == 0:
+        return _distance(frame, y)
+    n = gradient / length
+    square = float(frame.values @ (n * n)) - float(frame.values @ (n * d)) ** 2 / a
+    found = roots(square, length, value)
+    return min(map(abs, found)) if found else abs(value) / (2 * length)
 
 
 def surface_margin(shape: Quadric, p: Floats, on_it: bool) -> float:
