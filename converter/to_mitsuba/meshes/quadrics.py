@@ -321,8 +321,9 @@ def _in_box(frame: Frame, points: Floats, triangles: Triangles, bounds: Box) -> 
 
 def _finished(frame: Frame, points: Floats, triangles: Triangles, view: View) -> QuadricMesh:
     """In the scene's coordinates, with normals, and what they are off by."""
+    points, normals, triangles = _with_normals(frame, points, triangles.copy())
     used, corners = np.unique(triangles, return_inverse=True)
-    points, normals, triangles = _with_normals(frame, points[used], corners.reshape(-1, 3))
+    points, normals, triangles = points[used], normals[used], corners.reshape(-1, 3)
     a, b, c = (points[triangles[:, k]] for k in range(3))
     turned = (np.cross(b - a, c - a) * normals[triangles].sum(axis=1)).sum(axis=1) * np.linalg.det(frame.axes) < 0
     triangles[turned] = triangles[turned][:, ::-1]
