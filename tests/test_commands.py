@@ -681,7 +681,7 @@ def test_inspect_finds_planes_that_cut_nothing(whitted, tmp_path):
     assert [(p["redundant_planes"], p["bounded"]) for p in found["polyhedra"]] == [([6], True), ([], False)]
     _, out, _ = whitted("inspect", file)
     assert "9, redundant: 1" in out
-    assert "1 polyhedron" in out
+    assert "unbounded      1 object\n" in out
 
 
 def test_json_into_no_folder(whitted, scene, tmp_path):

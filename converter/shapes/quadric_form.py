@@ -92,7 +92,9 @@ def _form(numbers: Sequence[Fraction]) -> Form:
 
 @lru_cache(maxsize=4096)
 def kind_of(shape: Quadric) -> Kind:
-    """What it is; its numbers are finite."""
+    """What it is."""
+    if not all(map(math.isfinite, shape.coefficients)):
+        return Kind("", "its numbers are not finite", (0, 0), (0, 0), _form([Fraction(0)] * 10))
     return min(
         (_kind(form(shape)) for form in (decimal_form, binary_form)), key=lambda kind: sum(kind.matrix + kind.whole)
     )

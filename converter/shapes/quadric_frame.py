@@ -14,6 +14,9 @@ from converter.shapes.quadric_form import Form, binary_form, kind_of, nearest
 
 Floats = NDArray[np.float64]
 
+_LARGE = np.errstate(all="ignore")
+"""Numbers may be as large as they like."""
+
 
 @dataclass(frozen=True, eq=False)
 class Frame:
@@ -47,19 +50,20 @@ class Frame:
         return np.asarray(self.values * y + self.slope * np.array((0.0, 0.0, 1.0)))
 
     @property
+    @_LARGE
     def semi_axes(self) -> Floats:
         """(3,) where each axis meets the surface, or its conjugate one; 0 where it does not."""
-        with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
-            return np.where(self.values != 0, np.sqrt(np.abs(self.constant / self.values)), 0.0)
+        return np.where(self.values != 0, np.sqrt(np.abs(self.constant / self.values)), 0.0)
 
     @property
+    @_LARGE
     def around_middle(self) -> tuple[Vector, Vector]:
         """The box around its origin, and to the ends of the axes."""
-        reach = np.sqrt(((self.axes * self.semi_axes) ** 2).sum(axis=1))
-        (a, b, c), (d, e, f) = (self.origin - reach).tolist(), (self.origin + reach).tolist()
-        return (a, b, c), (d, e, f)
+        reach = np.linalg.norm(self.axes * self.semi_axes, axis=1)
+        return _place(self.origin - reach), _place(self.origin + reach)
 
     @property
+    @_LARGE
     def inside(self) -> Vector:
         """A point inside, about as far from the surface as the middle is."""
         y = np.zeros(3)
@@ -68,12 +72,11 @@ class Frame:
         elif self.constant >= 0:
             k = int(self.values.argmin())
             y[k] = math.sqrt(2 * self.constant / -self.values[k]) or float(np.abs(self.origin).max()) or 1.0
-        a, b, c = (self.origin + self.axes @ y).tolist()
-        return (a, b, c)
+        return _place(self.origin + self.axes @ y)
 
 
 @lru_cache(maxsize=4096)
-@np.errstate(all="ignore")  # numbers may be as large as they like
+@_LARGE
 def frame_of(shape: Quadric) -> Frame:
     """Of a quadric that has a surface.
 
@@ -109,13 +112,18 @@ def frame_of(shape: Quadric) -> Frame:
     return Frame(origin, axes, values, 0.0, sign * abs(constant))
 
 
+def _place(p: Floats) -> Vector:
+    """A point that is nowhere, or beyond all doubles, is somewhere."""
+    x, y, z = np.nan_to_num(p).tolist()
+    return (x, y, z)
+
+
 def _half_gradient(form: Form, p: Floats, size: Fraction) -> Floats:
     return np.array([nearest(x / size) for x in form.half_gradient([Fraction(x) for x in _finite(p)])])
 
 
 def _finite(p: Floats) -> list[float]:
-    """What has numbers beyond those of doubles is nowhere in particular."""
-    return np.where(np.isfinite(p), p, 0.0).tolist()  # type: ignore[no-any-return]
+    return list(_place(p))
 
 
 def _along_slope(axes: Floats, rank: int, gradient: Floats) -> tuple[Floats, float]:
@@ -135,6 +143,7 @@ def _along_slope(axes: Floats, rank: int, gradient: Floats) -> tuple[Floats, flo
 # ---- Rays ------------------------------------------------------------------------------------------------------------
 
 
+@_LARGE
 def intersections(shape: Quadric, origin: Floats, direction: Floats) -> list[Intersection]:
     """Where a line crosses it, at most twice; where it comes nearest to that, if it does not."""
     frame = frame_of(shape)
@@ -151,6 +160,7 @@ def intersections(shape: Quadric, origin: Floats, direction: Floats) -> list[Int
     return found
 
 
+@_LARGE
 def silhouette_margin(shape: Quadric, origin: Floats, direction: Floats) -> float:
     """To the next parallel that touches the surface.
 
@@ -173,12 +183,14 @@ def silhouette_margin(shape: Quadric, origin: Floats, direction: Floats) -> floa
     return min(map(abs, found)) if found else abs(value) / (2 * length)
 
 
+@_LARGE
 def surface_margin(shape: Quadric, p: Floats, on_it: bool) -> float:
     """Along the gradient."""
     frame = frame_of(shape)
     return math.inf if on_it else _distance(frame, frame.of(p))
 
 
+@_LARGE
 def radius_of_curvature(shape: Quadric, p: Floats) -> float:
     """At least this at a point of the surface: a curve along it turns by no more than |value| / |half gradient|."""
     frame = frame_of(shape)
@@ -186,6 +198,7 @@ def radius_of_curvature(shape: Quadric, p: Floats) -> float:
     return float(np.linalg.norm(frame.half_gradient(frame.of(p)))) / most if most else math.inf
 
 
+@_LARGE
 def nearest_bound(shape: Quadric, p: ArrayLike) -> float:
     """No point of the surface is nearer: on the way to it f changes by |f|, and no faster than the gradient lets it."""
     frame = frame_of(shape)

@@ -28,12 +28,16 @@ Triangles = NDArray[np.int64]
 
 OFF = 1 / 8
 """How much of a pixel the middle of an edge may be off the surface."""
-MOST_TRIANGLES = 1 << 20
+MOST_TRIANGLES = 1 << 18
 """Of one mesh, about: what asks for more stays coarser."""
 AROUND, STEP = 16, 0.5
 """Coarse meshes: corners around an axis, and steps along hyperbolas, in units of their hyperbolic angle."""
+WIDEST = 64
+"""Coarse meshes: steps along a hyperbola, either way, at most."""
 HALVINGS = 12
 """Coarse meshes: how often the distance to the end is halved toward the middle."""
+ROUNDING = 2.0**-44
+"""What places may be off, as a share of their coordinates along the axes."""
 STRETCH = 2.0
 """How long an edge may be next to its distance from the eye: what one pixel allows must not vary much along it."""
 
@@ -163,9 +167,13 @@ def _ring() -> Floats:
 
 
 def _angles(most: float) -> Floats:
-    """Hyperbolic angles between those whose sine is `most` at least, either way, 0 among them."""
-    steps = max(2, math.ceil(math.asinh(most) / STEP)) if math.isfinite(most) else 2
-    return np.arange(-steps, steps + 1) * np.float64(STEP)
+    """Hyperbolic angles between those whose sine is `most` at least, either way, 0 among them.
+
+    Of a middle that is tiny next to that, 0 is all.
+    """
+    end = max(2.0, math.asinh(most) / STEP) if math.isfinite(most) else 2.0
+    positive = STEP * np.arange(max(1, math.ceil(end) - WIDEST), math.ceil(end) + 1)
+    return np.concatenate([-positive[::-1], [0.0], positive])
 
 
 def _halved(most: float) -> Floats:
@@ -245,27 +253,34 @@ def _joined(meshes: Iterable[_Mesh]) -> _Mesh:
 
 
 def _refined(frame: Frame, points: Floats, triangles: Triangles, bounds: Box, view: View) -> _Mesh:
-    """Halve edges until none of those that may be seen is too far off, or too long."""
+    """Halve edges until none of those that may be seen is too far off, or too long.
+
+    Whether an edge is halved depends on its ends alone, so that neighbours agree, and a triangle stays that has none.
+    """
     eye = frame.of(view.eye)
-    while not _is_flat(frame) and len(triangles) < MOST_TRIANGLES:
+    finished: list[Triangles] = []
+    count = 0
+    while len(triangles) and not _is_flat(frame) and count + len(triangles) < MOST_TRIANGLES:
         pairs = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
         keys, owner = np.unique(pairs[:, 0] * len(points) + pairs[:, 1], return_inverse=True)
         ends = points[np.column_stack([keys // len(points), keys % len(points)])]
         middle = ends.mean(axis=1)
         placed = _on_surface(frame, middle)
         distance = np.maximum(_to_segments(eye, ends), view.near)
-        off = np.linalg.norm(placed - middle, axis=1)
+        off = np.linalg.norm(placed - middle, axis=1) - ROUNDING * np.abs(middle).max(axis=1)
         length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
         halved = (off > OFF * view.pixel * distance) | (length > STRETCH * distance)
-        if not halved.any():
-            break
         new = np.full(len(keys), -1)
         new[halved] = len(points) + np.arange(halved.sum())
         points = np.vstack([points, placed[halved]])
-        triangles = _halved_triangles(triangles, new[owner.reshape(-1, 3)])
+        corners = new[owner.reshape(-1, 3)]
+        stays = (corners < 0).all(axis=1)
+        finished.append(triangles[stays])
+        count += len(finished[-1])
+        triangles = _halved_triangles(triangles[~stays], corners[~stays])
         inside = _in_box(frame, points, triangles, bounds)
-        triangles = triangles[inside] if inside.any() else triangles
-    return points, triangles
+        triangles = triangles[inside] if inside.any() or count else triangles
+    return points, np.vstack([*finished, triangles])
 
 
 def _is_flat(frame: Frame) -> bool:
@@ -282,7 +297,7 @@ def _to_segments(eye: Floats, ends: Floats) -> Floats:
 
 
 def _halved_triangles(triangles: Triangles, new: Triangles) -> Triangles:
-    """Triangles whose edges, from each corner to the next, have a new vertex in the middle, or none (-1)."""
+    """Triangles whose edges, from each corner to the next, have a new vertex in the middle or -1; one at least has."""
     count = (new >= 0).sum(axis=1)
     # Turned until, of one or two new vertices, the first is on the first edge, and the second on the second.
     first = np.where(count == 1, (new >= 0).argmax(axis=1), ((new < 0).argmax(axis=1) + 1) % 3)
@@ -290,7 +305,6 @@ def _halved_triangles(triangles: Triangles, new: Triangles) -> Triangles:
     a, b, c = np.take_along_axis(triangles, turn, axis=1).T
     p, q, r = np.take_along_axis(new, turn, axis=1).T
     parts: Sequence[tuple[int, Sequence[tuple[Triangles, Triangles, Triangles]]]] = (
-        (0, [(a, b, c)]),
         (1, [(a, p, c), (p, b, c)]),
         (2, [(a, p, c), (p, q, c), (p, b, q)]),
         (3, [(a, p, r), (p, b, q), (r, q, c), (p, q, r)]),
