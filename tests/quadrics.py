@@ -77,3 +77,22 @@ def substituted(numbers, matrix, shift):
     squares = [product(k, k) for k in range(3)]
     mixed = [2 * product(k, m) for k, m in ((0, 1), (0, 2), (1, 2))]
     return (*squares, *mixed, *(2 * product(k, 3) for k in range(3)), product(3, 3))
+
+
+_SCENE = """\
+3 4 -9   0 .2 0   0 1 0   35
+2   0 0 0 .4 .5 .6 1 0 0   4 6 -5 .9 .8 .7 1 0 0
+2   checker .9 .8 .7 .2 .3 .7 .5   solid .8 .8 .9
+3   .3 .6 .3 20 .3 0 0   .2 .5 0 1 .3 0 0   .1 .2 .3 60 .2 .7 1.3
+3
+0 {finish} quadric {numbers}
+0 1 polyhedron 1 0 1 0 1.75
+1 0 sphere 1.2 .4 -2.5 .6
+"""
+_TURN = ((1, Fraction(1, 4), 0), (Fraction(-1, 4), 1, Fraction(1, 8)), (0, Fraction(1, 8), 1))
+
+
+def scene_with(numbers, glass=False) -> str:
+    """A scene file with a quadric, turned a little, over a mirror and behind a ball."""
+    turned = substituted(numbers, _TURN, (Fraction(1, 8), Fraction(-1, 16), 0))
+    return _SCENE.format(finish=2 if glass else 0, numbers=" ".join(repr(float(x)) for x in turned))

@@ -160,16 +160,9 @@ def _farther(x: float, low: float, high: float) -> float:
 
 def reaches(shape: Quadric, half_spaces: Sequence[Plane]) -> bool:
     """Of an ellipsoid, whether it reaches into each of them; of others nothing is known."""
-    if not _facts(shape).bounded:
-        return True
-    import numpy as np
+    from converter.shapes import quadric_frame
 
-    from converter.shapes.quadric_frame import frame_of
-
-    frame = frame_of(shape)
-    rows = np.array(half_spaces)
-    reach = np.linalg.norm(rows[:, :3] @ frame.axes * frame.semi_axes, axis=1)
-    return bool(np.all(rows[:, :3] @ frame.origin + rows[:, 3] <= reach + 1e-9 * (np.abs(rows[:, 3]) + reach)))
+    return not _facts(shape).bounded or quadric_frame.reaches(shape, half_spaces)
 
 
 def horizon(shape: Quadric, facts: Facts, eye: Vector) -> Horizon:

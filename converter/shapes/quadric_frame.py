@@ -1,6 +1,7 @@
 """A quadric along its principal axes, in floating point: distances, margins, and places."""
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 from fractions import Fraction
 from functools import lru_cache
@@ -8,12 +9,13 @@ from functools import lru_cache
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from converter.scene.model import Quadric, Vector
+from converter.scene.model import Plane, Quadric, Vector
 from converter.shapes.kind import Intersection
 from converter.shapes.quadric_form import Form, binary_form, kind_of, nearest
 
 Floats = NDArray[np.float64]
 
+_LEAST = 2.0**-1022
 _LARGE = np.errstate(all="ignore")
 """Numbers may be as large as they like."""
 
@@ -131,6 +133,8 @@ def _along_slope(axes: Floats, rank: int, gradient: Floats) -> tuple[Floats, flo
     rest = axes[:, rank:]
     along = -rest @ (rest.T @ gradient)
     slope = float(np.linalg.norm(along))
+    if not slope > 0:  # it is exactly, and too small for doubles
+        along, slope = rest[:, -1] * _LEAST, _LEAST
     last = along / slope
     if rank == 2:
         return np.column_stack([axes[:, :2], last]), -slope
@@ -207,6 +211,15 @@ def nearest_bound(shape: Quadric, p: ArrayLike) -> float:
     most, value = float(np.abs(frame.values).max()), abs(float(frame.at(y)))
     fall = gradient + math.sqrt(gradient * gradient + most * value)
     return value / fall if fall else 0.0
+
+
+@_LARGE
+def reaches(shape: Quadric, half_spaces: Sequence[Plane]) -> bool:
+    """Whether an ellipsoid reaches into each half-space, with normals of length 1, with some room for roundings."""
+    frame, rows = frame_of(shape), np.array(half_spaces)
+    reach = np.linalg.norm((rows[:, :3] @ frame.axes) * frame.semi_axes, axis=1)
+    height = rows[:, :3] @ frame.origin + rows[:, 3]
+    return not np.any(height > reach + 1e-9 * (np.abs(rows[:, 3]) + reach))
 
 
 def _along(frame: Frame, y: Floats, d: Floats) -> tuple[float, float, float]:
