@@ -12,7 +12,7 @@ from converter.shapes import quadric as kind
 from converter.shapes.quadric_frame import frame_of
 from converter.to_mitsuba.bounds import Box
 from converter.to_mitsuba.meshes.mesh import PolyhedronError
-from converter.to_mitsuba.meshes.quadrics import OFF, View, quadric_mesh
+from converter.to_mitsuba.meshes.quadrics import OFF, View, quadric_mesh, quadric_solid
 from converter.to_mitsuba.surfaces import shapes
 
 TURNED = {
@@ -113,6 +113,27 @@ def test_an_ellipsoid_is_closed_and_has_its_volume(axes):
     assert mesh.volume == pytest.approx(4 / 3 * math.pi * a * b * c, rel=0.02 if a == 1 else 0.2)
     outside = mesh_of(quadric(-x for x in shape.coefficients), Box((-200.0,) * 3, (200.0,) * 3)).to_trimesh()
     assert outside.volume == pytest.approx(-mesh.volume, rel=1e-3)
+
+
+@EVERY
+def test_a_solid_is_closed_and_its_part_of_a_box_has_the_volume(shape):
+    from manifold3d import Error, Manifold, Mesh64
+
+    low, high = np.array((-3.0, -4.0, -5.0)), np.array((5.0, 4.0, 3.0))
+    solid = quadric_solid(shape, Box(tuple(low), tuple(high)), VIEW._replace(pixel=1 / 100))
+    body = Manifold(Mesh64(solid.vertices, solid.triangles.astype(np.uint64)))
+    assert body.status() == Error.NoError and body.volume() > 0
+    box = Manifold.cube(high - low).translate(low)
+    part = box - body if solid.complement else box ^ body
+    assert part.status() == Error.NoError
+    grid = np.stack(np.meshgrid(*(np.linspace(a, b, 81)[:-1] + (b - a) / 160 for a, b in zip(low, high, strict=True))))
+    frame = frame_of(shape)
+    share = (frame.at(frame.of(grid.reshape(3, -1).T)) < 0).mean()
+    assert part.volume() / box.volume() == pytest.approx(share, abs=2e-3)
+    a, b, c = (solid.vertices[solid.triangles[solid.surface, k]] for k in range(3))
+    middle = frame.of((a + b + c) / 3)
+    facing = (np.cross(b - a, c - a) @ frame.axes * frame.half_gradient(middle)).sum(axis=1)
+    assert ((facing < 0) if solid.complement else (facing > 0)).mean() > 0.999
 
 
 def test_what_is_out_of_sight_has_triangles_nevertheless():
