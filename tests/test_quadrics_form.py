@@ -3,6 +3,7 @@
 import math
 from fractions import Fraction
 
+import numpy as np
 import pytest
 from hypothesis import given
 from hypothesis import strategies as st
@@ -36,6 +37,17 @@ def test_so_does_what_has_no_surface(flaw, k, matrix, shift):
     numbers = substituted(FLAWS[flaw][k % len(FLAWS[flaw])], matrix, shift)
     assert kind_of(quadric(numbers))[:2] == ("", flaw)
     assert not facts([quadric(numbers)])[0].drawn
+
+
+@given(st.tuples(*[st.integers(-3, 3)] * 10), st.booleans())
+def test_signs_are_those_of_eigenvalues(numbers, hollow):
+    """Hollow matrices have no square to begin with."""
+    a, b, c, d, e, f, g, h, i, j = (0, 0, 0, *numbers[3:9], 0) if hollow else numbers
+    matrix = np.array([[2 * a, d, e, g], [d, 2 * b, f, h], [e, f, 2 * c, i], [g, h, i, 2 * j]], float)
+    kind = kind_of(quadric((a, b, c, d, e, f, g, h, i, j)))
+    for part, signs in ((matrix[:3, :3], kind.matrix), (matrix, kind.whole)):
+        values = np.linalg.eigvalsh(part)
+        assert signs == ((values > 1e-9).sum(), (values < -1e-9).sum())
 
 
 def test_decimals_are_taken_as_they_are_written():

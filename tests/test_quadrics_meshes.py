@@ -49,8 +49,8 @@ def test_triangles_face_outward(shape):
     a, b, c = (mesh.vertices[mesh.triangles[:, k]] for k in range(3))
     across = np.cross(b - a, c - a)
     length = np.linalg.norm(across, axis=1)
-    facing = (across * mesh.normals[mesh.triangles].sum(axis=1)).sum(axis=1)
-    assert np.all(facing[length > 0] > 0)
+    for corner in mesh.triangles.T:
+        assert np.all((across * mesh.normals[corner]).sum(axis=1)[length > 0] > 0)
 
 
 def crossings(mesh, origin, direction):
