@@ -71,7 +71,7 @@ class AnalyticSurfaces(ExactSurfaces):
                 close |= crossing.close | (t < most_blur(t) * reach)
                 blocks = t < distance
                 if dr.hint(index in self.contacts.objects, mode="scalar"):
-                    blocks &= ~self.contacts.lies_at(light, crossing.primitive, ray.d, t, distance, active)
+                    blocks &= ~self.contacts.lies_at(light, crossing, ray.d, active)
                 found = dr.select(blocks, mi.UInt32(index), found)
         return found, close
 
@@ -86,6 +86,7 @@ class AnalyticSurfaces(ExactSurfaces):
     def _intersect_bounded(self, index: int, bound: tuple[Any, Any], ray: Ray, reach: Any) -> Crossing:
         """A branch and no mask: most packets of rays pass by most surfaces and save their primitives."""
         t = dr.full(self._types.Float, dr.inf, dr.width(ray.d))
+        enters = dr.full(mi.Bool, False, dr.width(ray.d))
         primitive = dr.zeros(mi.UInt32, dr.width(ray.d))
         close = dr.full(mi.Bool, False, dr.width(ray.d))
         center, radius = bound
@@ -93,8 +94,8 @@ class AnalyticSurfaces(ExactSurfaces):
         b = -dr.dot(f, ray.d)
         if (dr.squared_norm(f + b * ray.d) <= radius * radius) & (b > -radius):
             crossing = self._intersect_rows(index, ray, reach)
-            t, primitive, close = crossing.t, crossing.primitive, crossing.close
-        return Crossing(t, primitive, 0, close)
+            t, enters, primitive, close = crossing.t, crossing.enters, crossing.primitive, crossing.close
+        return Crossing(t, enters, primitive, 0, close)
 
     def _intersect_rows(self, index: int, ray: Ray, reach: Any) -> Crossing:
         own = ray.object == index
