@@ -274,10 +274,11 @@ def test_quotients_are_rounded_once(mi):
 
 
 HOST_DIVISIONS = {
-    "integrators/analytic.py": {"_bound"},
-    "integrators/contacts.py": {"__init__", "of"},
-    "integrators/geometry.py": {"_normalised"},
-    "integrators/rounding.py": {"camera_errors"},
+    "intersection/analytic.py": {"_bound"},
+    "intersection/rounding.py": {"camera_errors"},
+    "intersection/shapes/polyhedron.py": {"contacts", "_normalised"},
+    "intersection/shapes/quadric.py": {"_form", "_rows", "_anchor", "_contact"},
+    "intersection/shapes/sphere.py": {"contacts"},
     "integrators/pace.py": {"__init__", "rows", "samples", "launch"},
     "trial.py": {"_memory"},
     "integrators/whitted.py": {"__init__", "_bands", "_corners", "sample_offsets"},
@@ -309,7 +310,7 @@ def test_drjit_exp2_in_double_precision_overflows_where_it_should_underflow(mi):
 
 
 def test_power_underflows(mi):
-    from mitsuba_plugins.integrators.rays import power
+    from mitsuba_plugins.intersection.rays import power
 
     base = np.linspace(0, 1, 20_001)
     for exponent in (0.0, 1.0, 1000.0, 1e6):

@@ -12,7 +12,7 @@ from numpy.typing import NDArray
 
 from converter.renderers.records import MOST_RAYS, HitRecord, LightRecord, PixelRecord, RayKind, RayRecord
 from converter.scene.settings import Settings
-from mitsuba_plugins.integrators.rays import NOTHING, Ray, lanes
+from mitsuba_plugins.intersection.rays import NOTHING, Ray, lanes
 
 
 def trace_pixels(scene: Any, settings: Settings, pixels: Sequence[tuple[int, int]]) -> list[PixelRecord]:
@@ -42,11 +42,11 @@ def trace_pixels(scene: Any, settings: Settings, pixels: Sequence[tuple[int, int
 class _Rays:
     """The numbers of rays, with their last axis the rays': those of a `Ray`, as it has them."""
 
-    columns: tuple[NDArray[Any], ...]  # o, d, object, record, inside, t_min, spread
+    columns: tuple[NDArray[Any], ...]  # o, d, object, primitive, inside, t_min, spread
 
     @classmethod
     def of(cls, ray: Ray, count: int) -> "_Rays":
-        columns = (ray.o, ray.d, ray.object, ray.record, ray.inside, ray.t_min, ray.spread)
+        columns = (ray.o, ray.d, ray.object, ray.primitive, ray.inside, ray.t_min, ray.spread)
         return cls(tuple(np.broadcast_to(a, (*a.shape[:-1], count)) for a in map(np.array, columns)))
 
     def chosen(self, which: Sequence[int]) -> "_Rays":
@@ -58,12 +58,12 @@ class _Rays:
     def ray(self, types: Any) -> Ray:
         import mitsuba as mi
 
-        o, d, index, record, inside, t_min, spread = map(np.ascontiguousarray, self.columns)
+        o, d, index, primitive, inside, t_min, spread = map(np.ascontiguousarray, self.columns)
         return Ray(
             types.Point3(o),
             types.Vector3(d),
             mi.UInt32(index),
-            mi.UInt32(record),
+            mi.UInt32(primitive),
             mi.Bool(inside),
             types.Float(t_min),
             types.Float(spread),
@@ -169,24 +169,25 @@ class _Tracer:
         lights = self._lights(ray, hit, finish, pigment, count)
         answers = _list(finish.kd + finish.ks > 0, count)
         transmits = _list(finish.kt > 0, count)
-        columns = (_list(numbers, count) for numbers in (hit.valid, hit.object, hit.record, hit.t, hit.inside, total))
+        columns = (
+            _list(numbers, count) for numbers in (hit.valid, hit.object, hit.primitive, hit.t, hit.inside, total)
+        )
         vectors = (_rows(numbers, count) for numbers in (hit.p, hit.n, pigment))
-        for i, (valid, index, record, t, inside, past, point, normal, color) in enumerate(
+        for i, (valid, index, primitive, t, inside, past, point, normal, color) in enumerate(
             zip(*columns, *vectors, strict=True)
         ):
             if not valid:
                 yield None
                 continue
             own = lights[i] if answers[i] else []
-            plane = self._plane(index, record)
+            plane = self._plane(index, primitive)
             yield HitRecord(index, plane, t, point, normal, not inside, color, past and transmits[i], own)
 
-    def _plane(self, index: int, record: int) -> int | None:
+    def _plane(self, index: int, primitive: int) -> int | None:
         """The plane's index in the scene file."""
-        surface = self._integrator.surfaces[index]
-        if surface.sphere is not None:
-            return None
-        return int(list(surface.planes)[record - self._integrator.first_records[index]])
+        integrator = self._integrator
+        piece: int | None = integrator.surfaces[index].shape.pieces[primitive - integrator.first_primitives[index]]
+        return piece
 
     def _lights(self, ray: Any, hit: Any, finish: Any, pigment: Any, count: int) -> list[list[LightRecord]]:
         """For each ray what each light adds."""

@@ -193,7 +193,7 @@ class ShapeKind(Protocol[S]):
         ...
 
     def geometry(self, shape: S, facts: Facts) -> dict[str, Any]:
-        """The exact surface for Mitsuba's integrator, as `mitsuba_plugins.integrators.geometry` reads it."""
+        """The exact surface for Mitsuba's integrator, as `mitsuba_plugins.intersection.geometry` reads it."""
         ...
 
     def mitsuba_shape(self, shape: S, meshing: "Meshing", name: str) -> tuple[dict[str, Any], dict[str, Any]]:

@@ -4,7 +4,7 @@ import drjit as dr
 import mitsuba as mi
 
 from mitsuba_plugins.arithmetic import quotient
-from mitsuba_plugins.integrators.rays import power, unit
+from mitsuba_plugins.intersection.rays import power, unit
 
 
 class Phong(mi.BSDF):

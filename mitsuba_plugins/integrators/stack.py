@@ -5,7 +5,7 @@ from typing import Any
 import drjit as dr
 import mitsuba as mi
 
-from mitsuba_plugins.integrators.rays import Ray, Real
+from mitsuba_plugins.intersection.rays import Ray, Real
 
 
 class RayStack:
@@ -25,14 +25,14 @@ class RayStack:
     def write(self, slot: Any, ray: Ray, weight: Any, depth: Any, active: Any) -> None:
         """Put a ray at `slot`."""
         inside = dr.select(ray.inside, mi.UInt32(1), 0)
-        numbers = [*ray.o, *ray.d, ray.t_min, ray.spread, ray.object, ray.record, inside, weight, depth]
+        numbers = [*ray.o, *ray.d, ray.t_min, ray.spread, ray.object, ray.primitive, inside, weight, depth]
         for buffer, number in zip(self._buffers, numbers, strict=True):
             buffer.write(number, slot, active)
 
     def read(self, slot: Any, active: Any) -> tuple[Ray, Any, Any]:
         """The ray, weight and depth at `slot`."""
-        ox, oy, oz, dx, dy, dz, t_min, spread, index, record, inside, weight, depth = (
+        ox, oy, oz, dx, dy, dz, t_min, spread, index, primitive, inside, weight, depth = (
             buffer.read(slot, active) for buffer in self._buffers
         )
         o, d = self._types.Point3(ox, oy, oz), self._types.Vector3(dx, dy, dz)
-        return Ray(o, d, index, record, inside == 1, t_min, spread), weight, depth
+        return Ray(o, d, index, primitive, inside == 1, t_min, spread), weight, depth

@@ -12,8 +12,8 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
-from mitsuba_plugins.integrators.columns import column
-from mitsuba_plugins.integrators.rays import Real
+from mitsuba_plugins.intersection.columns import column
+from mitsuba_plugins.intersection.rays import Real
 
 
 @dataclass

@@ -9,16 +9,18 @@ import mitsuba as mi
 import numpy as np
 
 from mitsuba_plugins.arithmetic import quotient
-from mitsuba_plugins.integrators.analytic import AnalyticSurfaces
-from mitsuba_plugins.integrators.bvh import BvhSurfaces
-from mitsuba_plugins.integrators.columns import column
-from mitsuba_plugins.integrators.contacts import Contacts, EyeContact, LightContacts
-from mitsuba_plugins.integrators.exact import Records
-from mitsuba_plugins.integrators.geometry import parse_geometry
-from mitsuba_plugins.integrators.interactions import MitsubaSurfaces
-from mitsuba_plugins.integrators.mesh import MeshSurfaces
 from mitsuba_plugins.integrators.pace import Pace
-from mitsuba_plugins.integrators.rays import (
+from mitsuba_plugins.integrators.stack import RayStack
+from mitsuba_plugins.integrators.tables import Finish, Illumination, Lights, Materials
+from mitsuba_plugins.intersection.analytic import AnalyticSurfaces
+from mitsuba_plugins.intersection.bvh import BvhSurfaces
+from mitsuba_plugins.intersection.columns import column
+from mitsuba_plugins.intersection.contacts import Contacts, EyeContact, LightContacts
+from mitsuba_plugins.intersection.geometry import parse_geometry
+from mitsuba_plugins.intersection.interactions import MitsubaSurfaces
+from mitsuba_plugins.intersection.mesh import MeshSurfaces
+from mitsuba_plugins.intersection.primitives import Primitives
+from mitsuba_plugins.intersection.rays import (
     NOTHING,
     Hit,
     Ray,
@@ -32,7 +34,7 @@ from mitsuba_plugins.integrators.rays import (
     start_ray,
     unit,
 )
-from mitsuba_plugins.integrators.rounding import (
+from mitsuba_plugins.intersection.rounding import (
     camera_errors,
     coordinate_errors,
     decides_ties,
@@ -40,8 +42,6 @@ from mitsuba_plugins.integrators.rounding import (
     least_spread,
     most_blur,
 )
-from mitsuba_plugins.integrators.stack import RayStack
-from mitsuba_plugins.integrators.tables import Finish, Illumination, Lights, Materials
 
 INTERSECTIONS = ("analytic", "bvh", "mesh", "offset", "ulp")
 """Ways to find what a ray hits."""
@@ -56,7 +56,7 @@ class Whitted(mi.SamplingIntegrator):
 
      * - geometry
        - |string|
-       - The exact surfaces, as a JSON text (see :mod:`mitsuba_plugins.integrators.geometry`)
+       - The exact surfaces, as a JSON text (see :mod:`mitsuba_plugins.intersection.geometry`)
 
      * - filename
        - |string|
@@ -137,7 +137,7 @@ class Whitted(mi.SamplingIntegrator):
         if self.intersections not in (*INTERSECTIONS, "auto"):
             raise ValueError(f"whitted: intersections is one of {INTERSECTIONS} or auto, not '{self.intersections}'")
         if self.intersections == "auto" or (self.intersections == "bvh" and not self.surfaces):  # of nothing, no tree
-            size = sum(max(len(surface.planes), 1) for surface in self.surfaces)
+            size = sum(len(surface.shape.rows) for surface in self.surfaces)
             self.intersections = "analytic" if size <= ANALYTIC_LIMIT else "bvh"
         self.precision = props.get("precision", "double")
         if self.precision not in ("double", "float"):
@@ -172,8 +172,8 @@ class Whitted(mi.SamplingIntegrator):
 
         Let go of at the end: it may hold the scene, which holds this integrator, and such circles are never freed.
         """
-        records = Records(self.types, self.surfaces)
-        self.first_records = records.first
+        primitives = Primitives(self.types, self.surfaces)
+        self.first_primitives = primitives.first
         # These, too, are read anew each time: they are what mitsuba.traverse lets a user change.
         self._materials = Materials(self.types, [self._bsdfs.by_name[surface.material] for surface in self.surfaces])
         self._lights = Lights(self.types, scene.emitters())
@@ -183,13 +183,13 @@ class Whitted(mi.SamplingIntegrator):
         self._eye_contact = EyeContact(self.types, contacts, np.ravel(sensor.eye)) if hasattr(sensor, "eye") else None
         self._errors_of_primary_rays = camera_errors(self.types, sensor)
         if self.intersections == "analytic":
-            self._tracer = AnalyticSurfaces(self.types, self.surfaces, records, self._light_contacts)
+            self._tracer = AnalyticSurfaces(self.types, self.surfaces, primitives, self._light_contacts)
         elif self.intersections == "bvh":
-            self._tracer = BvhSurfaces(self.types, self.surfaces, records, self._light_contacts)
+            self._tracer = BvhSurfaces(self.types, self.surfaces, primitives, self._light_contacts)
         elif self.intersections == "mesh":
-            self._tracer = MeshSurfaces(self.types, scene, self.surfaces, records, self._light_contacts)
+            self._tracer = MeshSurfaces(self.types, scene, self.surfaces, primitives, self._light_contacts)
         else:
-            self._tracer = MitsubaSurfaces(scene, self.surfaces, records, self.intersections)
+            self._tracer = MitsubaSurfaces(scene, self.surfaces, primitives, self.intersections)
         try:
             yield
         finally:
@@ -211,7 +211,7 @@ class Whitted(mi.SamplingIntegrator):
         decides = decides_ties(hit.t) and self.intersections not in ("offset", "ulp")
         if not decides or not self._materials.has_edges:
             return self.types.Vector3(0)
-        return coordinate_errors(hit.p, hit.n, ray.d, hit.t, self._tracer.error(ray, hit))
+        return coordinate_errors(hit.p, hit.n, ray.d, hit.t, hit.off)
 
     def light(self, index, ray: Ray, hit: Hit, finish: Finish, color, active) -> Illumination:
         """What one light, by its index, adds at a hit."""
@@ -224,7 +224,10 @@ class Whitted(mi.SamplingIntegrator):
         # A surface is not lit along itself, nor by a light at the very point.
         apart = distance > 8 * epsilon(distance) * largest(hit.p)
         facing = (
-            active & (cosine > least_spread(cosine)) & apart & ~self._light_contacts.grazes(index, hit.record, active)
+            active
+            & (cosine > least_spread(cosine))
+            & apart
+            & ~self._light_contacts.grazes(index, hit.primitive, active)
         )
         blocker = self._tracer.blocker(hit, to_light, distance, index, facing)
         attenuation = a + distance * (b + distance * c)

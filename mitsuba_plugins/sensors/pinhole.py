@@ -4,7 +4,7 @@ import drjit as dr
 import mitsuba as mi
 
 from mitsuba_plugins.arithmetic import quotient
-from mitsuba_plugins.integrators.rays import unit
+from mitsuba_plugins.intersection.rays import unit
 
 
 class Pinhole(mi.Sensor):

@@ -4,7 +4,7 @@ import drjit as dr
 import mitsuba as mi
 
 from mitsuba_plugins.arithmetic import quotient
-from mitsuba_plugins.integrators.rounding import epsilon
+from mitsuba_plugins.intersection.rounding import epsilon
 
 
 class SolidChecker(mi.Texture):

@@ -13,19 +13,13 @@ import mitsuba as mi
 import numpy as np
 
 from mitsuba_plugins.arithmetic import quotient
-from mitsuba_plugins.integrators.columns import column
-from mitsuba_plugins.integrators.contacts import LightContacts
-from mitsuba_plugins.integrators.exact import (
-    ExactSurfaces,
-    Records,
-    narrow,
-    passage_crossing,
-    sphere_distance,
-    whole_ray,
-)
-from mitsuba_plugins.integrators.geometry import Surface
-from mitsuba_plugins.integrators.rays import NOTHING, Ray, Real, largest
-from mitsuba_plugins.integrators.rounding import most_blur
+from mitsuba_plugins.intersection.columns import column
+from mitsuba_plugins.intersection.contacts import LightContacts
+from mitsuba_plugins.intersection.geometry import Surface
+from mitsuba_plugins.intersection.primitives import Primitives
+from mitsuba_plugins.intersection.rays import NOTHING, Ray, Real, largest
+from mitsuba_plugins.intersection.rounding import most_blur
+from mitsuba_plugins.intersection.surfaces import ExactSurfaces
 from native_tracer.bvh import threaded_bvh
 
 SLACK = 2.0**-20
@@ -38,28 +32,20 @@ _LARGEST_EXPONENT = 1023
 class BvhSurfaces(ExactSurfaces):
     """Surfaces in a tree of single-precision boxes, which are rounded outward: what they let through is exact."""
 
-    def __init__(self, types: Real, surfaces: list[Surface], records: Records, contacts: LightContacts) -> None:
-        super().__init__(records, contacts)
+    def __init__(self, types: Real, surfaces: list[Surface], primitives: Primitives, contacts: LightContacts) -> None:
+        super().__init__(primitives, contacts)
         self._types = types
         scale = _scale(surfaces)
         self._scale = types.Float(scale)
         self._nodes, self._node_count = _nodes(surfaces, scale)
-        self._any_sphere = any(surface.sphere is not None for surface in surfaces)
-        self._any_polyhedron = any(surface.sphere is None for surface in surfaces)
-        self._first = column(mi.UInt32, records.first)
-        self._count = column(mi.UInt32, [len(surface.planes) for surface in surfaces])
         dr.make_opaque(self._node_count, self._scale)
 
     def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any, Any]:
-        """Distance (infinite for none), object (NOTHING for none) and record of the first hit, and whether it was close
-        to a tie.
-        """
+        """As `ExactSurfaces` has it."""
         return self._search(ray, self._types.Float(dr.inf), None, active)
 
     def find_blocker(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any]:
-        """Some object that the ray meets before it comes to a light at `distance`, or NOTHING, and whether that was
-        close to a tie.
-        """
+        """As `ExactSurfaces` has it."""
         _, found, _, close = self._search(ray, distance, light, active)
         return found, close
 
@@ -69,7 +55,7 @@ class BvhSurfaces(ExactSurfaces):
         width = dr.width(ray.d)
         t_best = dr.zeros(self._types.Float, width) + distance
         object_best = dr.full(mi.UInt32, NOTHING, width)
-        record_best = dr.zeros(mi.UInt32, width)
+        primitive_best = dr.zeros(mi.UInt32, width)
         t_second = dr.full(self._types.Float, dr.inf, width)
         close = dr.full(mi.Bool, False, width)
         reach = largest(ray.o)
@@ -83,25 +69,26 @@ class BvhSurfaces(ExactSurfaces):
         start = _octant(ray.d) * self._node_count
         node = mi.UInt32(start)
         end = start + self._node_count
-        # First the object that the ray travels inside. One that it leaves is convex, and not met again.
-        index = dr.select(ray.inside, ray.object, NOTHING)
+        # First the object that the ray travels inside, or leaves: a convex one it does not meet again.
+        index = ray.object if self.primitives.any_concave else dr.select(ray.inside, ray.object, NOTHING)
         searching = mi.Bool(active)
         while searching:
             tested = searching & (index != NOTHING)
             if tested:
-                t, record, near_tie = self._intersect(ray, index, tested, reach)
-                close |= tested & (near_tie | (t < most_blur(t) * reach))
+                crossing = self.primitives.intersect(ray, index, tested, reach)
+                t, primitive = crossing.t, crossing.primitive
+                close |= tested & (crossing.close | (t < most_blur(t) * reach))
                 # Of surfaces at the same distance the first counts.
                 ties = (t == t_best) & (object_best != NOTHING) & (index < object_best)
                 closer = tested & ((t < t_best) | ties)
                 if dr.hint(light is not None, mode="scalar"):
-                    closer &= ~self.contacts.lies_at(light, record, ray.d, t, distance, closer)
+                    closer &= ~self.contacts.lies_at(light, crossing, ray.d, closer)
                 if dr.hint(light is None, mode="scalar"):
                     farther = dr.select(t < t_best, t_best, dr.select(t > t_best, t, dr.inf))
                     t_second = dr.select(tested & (farther < t_second), farther, t_second)
                 t_best = dr.select(closer, t, t_best)
                 object_best = dr.select(closer, index, object_best)
-                record_best = dr.select(closer, record, record_best)
+                primitive_best = dr.select(closer, primitive, primitive_best)
                 farthest = mi.Float(t_best * self._scale) * (1 + SLACK)
             if dr.hint(light is not None, mode="scalar"):
                 searching &= object_best == NOTHING
@@ -123,43 +110,7 @@ class BvhSurfaces(ExactSurfaces):
         if dr.hint(light is None, mode="scalar"):
             near = most_blur(t_best) * (t_best + reach)
             close |= (t_second - t_best <= near) | (t_best < near)
-        return t_best, object_best, record_best, close
-
-    def _intersect(self, ray: Ray, index: Any, active: Any, reach: Any) -> tuple[Any, Any, Any]:
-        """Distance to one surface (infinite or NaN for none: compare with <), the record that is met, and whether that
-        was close to a tie.
-        """
-        own = ray.object == index
-        first = dr.gather(mi.UInt32, self._first, index, active)
-        if not self._any_polyhedron:
-            t, close = self._intersect_sphere(ray, first, own, active)
-            return t, first, close
-        count = dr.gather(mi.UInt32, self._count, index, active)
-        t, record, close = self._intersect_planes(ray, first, count, own, active & (count > 0), reach)
-        if self._any_sphere:
-            sphere = count == 0
-            t_sphere, touches = self._intersect_sphere(ray, first, own, active & sphere)
-            t = dr.select(sphere, t_sphere, t)
-            record = dr.select(sphere, first, record)
-            close = dr.select(sphere, touches, close)
-        return t, record, close
-
-    def _intersect_sphere(self, ray: Ray, first: Any, own: Any, active: Any) -> tuple[Any, Any]:
-        row = self.records.row(first, active)
-        return sphere_distance(self._types.Point3(row.xyz), row.w, ray, own)
-
-    @dr.syntax
-    def _intersect_planes(
-        self, ray: Ray, first: Any, count: Any, own: Any, active: Any, reach: Any
-    ) -> tuple[Any, Any, Any]:
-        passage = whole_ray(self._types, dr.width(ray.d))
-        record = mi.UInt32(first)
-        end = first + count
-        while active & (record < end):
-            row = self.records.row(record, active)
-            passage = narrow(passage, ray, self._types.Vector3(row.xyz), row.w, record)
-            record += 1
-        return passage_crossing(passage, ray, own, reach)
+        return t_best, object_best, primitive_best, close
 
 
 def _octant(d: Any) -> Any:

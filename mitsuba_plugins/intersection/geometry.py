@@ -7,41 +7,34 @@ which ties go:
      "object_1": {"material": "name of a BSDF", "planes": {"0": [a, b, c, d], ...},
                   "box": [its lower corner, its upper corner] or null where it is unbounded,
                   "triangles": [plane of each triangle of its mesh], if it has one,
-                  "deviation": largest distance of a mesh vertex from its planes, likewise}}
+                  "deviation": largest distance of a mesh vertex from its planes, likewise},
+     "object_2": {"material": "name of a BSDF", "quadric": [A, B, C, D, E, F, G, H, I, J], "box": likewise}}
+
+A quadric is where A x^2 + B y^2 + C z^2 + D xy + E xz + F yz + G x + H y + I z + J <= 0; it needs no box.
 
 JSON writes the shortest digits that read back as the same double, so that nothing is lost in a file.
 """
 
 import json
 import math
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
-Vector = tuple[float, float, float]
-Plane = tuple[float, float, float, float]
+from mitsuba_plugins.intersection.shapes.kind import Shape, ShapeKind, Vector
+from mitsuba_plugins.intersection.shapes.table import SHAPE_KINDS
 
 
 @dataclass(frozen=True, slots=True)
 class Surface:
-    """A sphere (center, radius) or a convex polyhedron (planes, by their index in the scene)."""
+    """An object: its shape, and what is known of its mesh."""
 
     name: str
     material: str
-    sphere: Plane | None = None
-    planes: dict[int, Plane] = field(default_factory=dict)
-    box: tuple[Vector, Vector] | None = None  # around it, with room for rounding; None where that is not finite
+    kind: ShapeKind
+    shape: Shape
+    box: tuple[Vector, Vector] | None  # around it, with room for rounding; None where that is not finite
     triangles: tuple[int, ...] = ()
     deviation: float = 0.0
-
-    @property
-    def rows(self) -> list[Plane]:
-        """The sphere, or the planes, with normals of any length."""
-        return [self.sphere] if self.sphere is not None else list(self.planes.values())
-
-    @property
-    def unit_rows(self) -> list[Plane]:
-        """The sphere, or the planes with unit normals."""
-        return [self.sphere] if self.sphere is not None else list(map(_normalised, self.planes.values()))
 
 
 class Geometry:
@@ -69,13 +62,14 @@ def parse_geometry(text: str) -> Geometry:
 
 
 def _surface(name: str, entry: dict[str, Any]) -> Surface:
-    material = entry["material"]
-    if "sphere" in entry:
-        x, y, z, r = entry["sphere"]
-        return Surface(name, material, (x, y, z, r), box=_roomy((x - r, y - r, z - r), (x + r, y + r, z + r)))
-    planes = {int(index): _plane(*plane) for index, plane in entry["planes"].items()}
-    box = _roomy(*entry["box"]) if entry["box"] is not None else None
-    return Surface(name, material, None, planes, box, tuple(entry.get("triangles", ())), entry.get("deviation", 0.0))
+    key = next((key for key in SHAPE_KINDS if key in entry), None)
+    if key is None:
+        raise ValueError(f"whitted: 'geometry' gives {name} none of {', '.join(SHAPE_KINDS)}")
+    kind = SHAPE_KINDS[key]
+    shape = kind.read(entry)
+    box = _roomy(*shape.box) if shape.box is not None else None
+    triangles, deviation = tuple(entry.get("triangles", ())), entry.get("deviation", 0.0)
+    return Surface(name, entry["material"], kind, shape, box, triangles, deviation)
 
 
 def _roomy(low: Vector, high: Vector) -> tuple[Vector, Vector] | None:
@@ -84,13 +78,3 @@ def _roomy(low: Vector, high: Vector) -> tuple[Vector, Vector] | None:
     (a, b, c), (d, e, f) = low, high
     corners = (a - room, b - room, c - room), (d + room, e + room, f + room)
     return corners if all(map(math.isfinite, (*corners[0], *corners[1]))) else None
-
-
-def _plane(a: float, b: float, c: float, d: float) -> Plane:
-    return a, b, c, d
-
-
-def _normalised(plane: Plane) -> Plane:
-    a, b, c, d = plane
-    length = math.hypot(a, b, c)
-    return a / length, b / length, c / length, d / length

@@ -11,18 +11,18 @@ import drjit as dr
 import mitsuba as mi
 
 from mitsuba_plugins.arithmetic import quotient
-from mitsuba_plugins.integrators.exact import Records
-from mitsuba_plugins.integrators.geometry import Surface
-from mitsuba_plugins.integrators.primitives import Primitives
-from mitsuba_plugins.integrators.rays import NOTHING, Hit, Ray
+from mitsuba_plugins.intersection.geometry import Surface
+from mitsuba_plugins.intersection.mitsuba_primitives import MitsubaPrimitives
+from mitsuba_plugins.intersection.primitives import Primitives
+from mitsuba_plugins.intersection.rays import NOTHING, Hit, Ray
 
 
 class MitsubaSurfaces:
     """The shapes of a Mitsuba scene, taken at their word; meshes may stand for spheres."""
 
-    def __init__(self, scene: Any, surfaces: list[Surface], records: Records, offset: str) -> None:
+    def __init__(self, scene: Any, surfaces: list[Surface], primitives: Primitives, offset: str) -> None:
         self._scene = scene
-        self._primitives = Primitives(scene, surfaces, records)
+        self._primitives = MitsubaPrimitives(scene, surfaces, primitives)
         self._offset = _mitsuba_offset if offset == "offset" else _ulp_offset
 
     def closest(self, ray: Ray, active: Any) -> Hit:
@@ -30,16 +30,16 @@ class MitsubaSurfaces:
         probe = mi.Ray3f(ray.o, ray.d)
         found = self._scene.ray_intersect_preliminary(probe, coherent=False, active=active)
         valid = active & found.is_valid()
-        index, record = self._primitives.find(found, valid)
+        index, primitive = self._primitives.find(found, valid)
         flags = mi.RayFlags.Minimal | mi.RayFlags.ShadingFrame
         si = found.compute_surface_interaction(probe, +flags, valid)
         n = mi.Vector3f(si.sh_frame.n)
         index, inside = dr.select(valid, index, NOTHING), dr.dot(n, ray.d) > 0
-        return Hit(valid, si.t, index, record, si.p, n, inside, mi.Float(0), mi.Float(0))
+        return Hit(valid, si.t, index, primitive, si.p, n, inside, mi.Float(0), mi.Float(0), mi.Float(0))
 
     def spawn(self, hit: Hit, d: Any, inside: Any, spread: Any) -> Ray:
         """The ray that leaves `hit` in direction `d`."""
-        return Ray(self._offset(hit, d), d, hit.object, hit.record, inside, mi.Float(0), spread)
+        return Ray(self._offset(hit, d), d, hit.object, hit.primitive, inside, mi.Float(0), spread)
 
     def blocker(self, hit: Hit, d: Any, distance: Any, light: Any, active: Any) -> Any:
         """The first object between `hit` and a light at `distance` in direction `d`, or NOTHING."""

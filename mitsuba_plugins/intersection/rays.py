@@ -1,7 +1,7 @@
 """Rays and hits, and the rules that keep a ray from hitting the surface it starts on.
 
-The rules are the native tracer's. A ray knows the object and the plane that it starts on and whether it travels inside
-that object, so that its own convex surface is excluded by knowledge and not by a distance. Other surfaces count from
+The rules are the native tracer's. A ray knows the object and the primitive that it starts on and whether it travels
+inside that object, so that where it starts is excluded by knowledge and not by a distance. Other surfaces count from
 `t_min` on, a bound on the rounding error of the origin (Pharr, Jakob and Humphreys, Physically Based Rendering, 4th
 edition, section 6.8, gives the reasoning).
 
@@ -15,7 +15,7 @@ import drjit as dr
 import mitsuba as mi
 
 from mitsuba_plugins.arithmetic import quotient
-from mitsuba_plugins.integrators.rounding import epsilon, least_spread, most_blur
+from mitsuba_plugins.intersection.rounding import epsilon, least_spread, most_blur
 
 NOTHING = 0xFFFFFFFF
 """Object index of a ray that starts on no surface, and of a hit that is none."""
@@ -48,8 +48,8 @@ class Ray:
 
     o: Any  # Point3
     d: Any  # Vector3
-    object: Any  # UInt32, NOTHING for a primary ray, as is `record`
-    record: Any  # UInt32, the record of the sphere or plane that o lies on, see `exact`
+    object: Any  # UInt32, NOTHING for a primary ray, as is `primitive`
+    primitive: Any  # UInt32, the sphere or plane that o lies on, see `primitives`
     inside: Any  # Bool, whether the ray travels inside `object`
     t_min: Any  # Float, how far o may be off; a hit on anything but `object` is farther
     spread: Any  # Float, how far d may be off, see `rounding`
@@ -57,15 +57,16 @@ class Ray:
 
 @dataclass
 class Hit:
-    """What a ray met: distance, object and record, the point on that surface, and its unit normal, which points out."""
+    """What a ray met: distance, object, primitive, the point on that, and its unit normal, which points out."""
 
     valid: Any  # Bool
     t: Any  # Float
     object: Any  # UInt32
-    record: Any  # UInt32, see `exact`
+    primitive: Any  # UInt32, see `primitives`
     p: Any  # Point3
     n: Any  # Vector3, outward
     inside: Any  # Bool, whether the ray came from inside the object
+    off: Any  # Float, how far ray and surface may be off from one another there
     error: Any  # Float, how far p may be off
     lean: Any  # Float, how far n may be off
 
@@ -85,7 +86,7 @@ def start_ray(types: Real, o: Any, d: Any, error: Any = 0, spread: Any = 0) -> R
         o=types.Point3(o) + dr.zeros(types.Point3, width),
         d=types.Vector3(d),
         object=dr.full(mi.UInt32, NOTHING, width),
-        record=dr.full(mi.UInt32, NOTHING, width),
+        primitive=dr.full(mi.UInt32, NOTHING, width),
         inside=dr.full(mi.Bool, False, width),
         t_min=dr.zeros(types.Float, width) + error,
         spread=dr.full(types.Float, least_spread(types.Float), width) + spread,
@@ -104,7 +105,7 @@ def lanes(width: int) -> Any:
 
 def spawn(hit: Hit, d: Any, inside: Any, spread: Any) -> Ray:
     """The ray that leaves `hit` in direction `d`, which may be off by `spread`, on the given side of the object."""
-    return Ray(hit.p, d, hit.object, hit.record, inside, hit.error, spread)
+    return Ray(hit.p, d, hit.object, hit.primitive, inside, hit.error, spread)
 
 
 def origin_error(p: Any, t: Any) -> Any:

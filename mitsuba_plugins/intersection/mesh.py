@@ -13,13 +13,13 @@ from typing import Any
 import drjit as dr
 import mitsuba as mi
 
-from mitsuba_plugins.arithmetic import quotient
-from mitsuba_plugins.integrators.columns import column
-from mitsuba_plugins.integrators.contacts import LightContacts
-from mitsuba_plugins.integrators.exact import ExactSurfaces, Records, sphere_distance
-from mitsuba_plugins.integrators.geometry import Surface
-from mitsuba_plugins.integrators.primitives import Primitives
-from mitsuba_plugins.integrators.rays import NOTHING, Ray, Real, largest, ray_reach
+from mitsuba_plugins.intersection.columns import column
+from mitsuba_plugins.intersection.contacts import LightContacts
+from mitsuba_plugins.intersection.geometry import Surface
+from mitsuba_plugins.intersection.mitsuba_primitives import MitsubaPrimitives
+from mitsuba_plugins.intersection.primitives import Primitives
+from mitsuba_plugins.intersection.rays import NOTHING, Ray, Real, largest, ray_reach
+from mitsuba_plugins.intersection.surfaces import ExactSurfaces
 
 OFFSET = 2.0**-20
 """Start of a ray off its surface, in units of the largest coordinate involved: 16 units in the last place."""
@@ -30,17 +30,17 @@ class MeshSurfaces(ExactSurfaces):
     """The shapes of a Mitsuba scene, with the exact surfaces they were made from."""
 
     def __init__(
-        self, types: Real, scene: Any, surfaces: list[Surface], records: Records, contacts: LightContacts
+        self, types: Real, scene: Any, surfaces: list[Surface], primitives: Primitives, contacts: LightContacts
     ) -> None:
-        super().__init__(records, contacts)
+        super().__init__(primitives, contacts)
         self._types = types
         self._scene = scene
-        self._primitives = Primitives(scene, surfaces, records)
+        self._found = MitsubaPrimitives(scene, surfaces, primitives)
         self._deviation = column(types.Float, [surface.deviation for surface in surfaces])
-        self._extent = column(types.Float, [_extent(surface) for surface in surfaces])
+        self._extent = column(types.Float, [surface.shape.extent for surface in surfaces])
 
     def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any, Any]:
-        """Distance (infinite for none), object (NOTHING for none) and record of the first hit. Looks for no ties."""
+        """Distance (infinite for none), object (NOTHING for none) and primitive of the first hit. Looks for no ties."""
         return *self._search(ray, self._types.Float(dr.inf), None, active), None
 
     def find_blocker(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any]:
@@ -52,25 +52,27 @@ class MeshSurfaces(ExactSurfaces):
     def _search(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any, Any]:
         """What is met first before `distance`, at which there may be a light."""
         width = dr.width(ray.d)
+        reach = largest(ray.o)
         start = self._types.Point3(self._start(ray, active))
         t = dr.full(self._types.Float, dr.inf, width)
         found = dr.full(mi.UInt32, NOTHING, width)
-        record = dr.zeros(mi.UInt32, width)
+        primitive = dr.zeros(mi.UInt32, width)
         searching = mi.Bool(active)
         steps = dr.zeros(mi.UInt32, width)
         while searching:
             probe = mi.Ray3f(mi.Point3f(start), mi.Vector3f(ray.d))
             pi = self._scene.ray_intersect_preliminary(probe, coherent=False, active=searching)
             met = searching & pi.is_valid()
-            index, index_record = self._primitives.find(pi, met)
-            t_exact = self._distance(index, index_record, ray, met)
+            index, index_primitive = self._found.find(pi, met)
+            crossing = self.primitives.intersect_one(ray, index, index_primitive, met, reach)
+            t_exact = crossing.t
             allowed = t_exact < dr.inf
             accepted = met & allowed & (t_exact < distance)
             if dr.hint(light is not None, mode="scalar"):
-                accepted &= ~self.contacts.lies_at(light, index_record, ray.d, t_exact, distance, accepted)
+                accepted &= ~self.contacts.lies_at(light, crossing, ray.d, accepted)
             t = dr.select(accepted, t_exact, t)
             found = dr.select(accepted, index, found)
-            record = dr.select(accepted, index_record, record)
+            primitive = dr.select(accepted, index_primitive, primitive)
             # Step over what may not be met. Steps double, so that they get out of any rounding error in a few; where
             # they start from nothing (at the origin, from the eye) they cannot, and end.
             steps += 1
@@ -79,27 +81,12 @@ class MeshSurfaces(ExactSurfaces):
             step += dr.gather(self._types.Float, self._deviation, index, met)
             step *= self._types.Float(mi.UInt32(1) << steps)
             start = self._types.Point3(start + ray.d * (self._types.Float(pi.t) + step))
-        return t, found, record
-
-    def _distance(self, index: Any, record: Any, ray: Ray, active: Any) -> Any:
-        """Distance to one sphere or one plane of object `index`; infinite or NaN where the rules of `rays` bar it."""
-        sphere, v, w = self.records.surface(index, record, active)
-        own = ray.object == index
-        t_plane = -quotient(dr.dot(v, ray.o) + w, dr.dot(v, ray.d))
-        t_own = dr.select(ray.inside & (ray.record != record), dr.maximum(t_plane, 0), dr.inf)
-        t_plane = dr.select(own, t_own, dr.select(t_plane > ray.t_min, t_plane, dr.inf))
-        return dr.select(sphere, sphere_distance(self._types.Point3(v), w, ray, own)[0], t_plane)
+        return t, found, primitive
 
     def _start(self, ray: Ray, active: Any) -> Any:
         """Origin for the single-precision ray, off the surface that `ray` starts on, on the side it travels on."""
         leaves = active & (ray.object != NOTHING)
-        surface = self.records.surface(ray.object, ray.record, leaves)
-        _, n = self.records.surface_point(surface, ray.o, dr.select(ray.inside, -ray.d, ray.d))
+        n = self.primitives.surface_at(ray, ray.object, ray.primitive, ray.o, leaves, largest(ray.o)).n
         reach = dr.maximum(ray_reach(ray), dr.gather(self._types.Float, self._extent, ray.object, leaves))
         offset = reach * OFFSET + 2 * dr.gather(self._types.Float, self._deviation, ray.object, leaves)
         return dr.select(leaves, ray.o + dr.select(ray.inside, -n, n) * offset, ray.o)
-
-
-def _extent(surface: Surface) -> float:
-    """Largest coordinate of a sphere, whose rounding moves its surface; a mesh's is in its deviation."""
-    return max(map(abs, surface.sphere[:3])) + surface.sphere[3] if surface.sphere is not None else 0.0

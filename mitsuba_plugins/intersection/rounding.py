@@ -3,8 +3,9 @@
 People place eyes, floors, boxes and tiles at round numbers, so that whole rows of rays meet edges exactly. What then
 decides are two numbers that are equal but for their rounding errors, and count as equal: each comparison knows a bound
 of the errors of its two numbers, and what happens at a tie is a rule of the format. A ray's origin may be off by its
-`t_min`, its direction by its `spread`, a surface by `surface_error`; at distance t a ray is off by t_min + t spread.
-The spread grows from bounce to bounce; where it exceeds `most_blur`, nothing is known that a rule could be applied to.
+`t_min`, its direction by its `spread`, a surface by its kind's `surface_error`; at distance t a ray is off by
+t_min + t spread. The spread grows from bounce to bounce; where it exceeds `most_blur`, nothing is known that a rule
+could be applied to.
 
 Higham, Accuracy and Stability of Numerical Algorithms, 2nd edition, 2002, section 3.3: running error analysis.
 """
@@ -51,26 +52,6 @@ def camera_errors(types: Any, sensor: Any) -> tuple[Any, Any]:
     error, other = (max(map(input_error, point)) for point in (eye, look_at))
     spread = min((error + other) / math.dist(eye, look_at), most_blur(types.Float))
     return dr.opaque(types.Float, error), dr.opaque(types.Float, spread)
-
-
-def surface_error(sphere: Any, v: Any, w: Any, reach: Any) -> Any:
-    """How far a surface may be off where rays whose coordinates are no larger than `reach` are compared with it.
-
-    Args:
-        sphere: whether it is one.
-        v: its centre, or a plane's unit normal (Vector3).
-        w: its radius, or a plane's offset (Float).
-        reach: Float.
-
-    """
-    number = epsilon(w)
-    largest = dr.maximum(dr.maximum(dr.abs(v.x), dr.abs(v.y)), dr.abs(v.z))
-    whole = w == dr.floor(w)
-    along_axis = dr.select(whole, 0, number * dr.abs(w))
-    slanting = 4 * number * (dr.abs(w) + reach)
-    plane = dr.select(largest == 1, along_axis, slanting)
-    meant = whole & (v.x == dr.floor(v.x)) & (v.y == dr.floor(v.y)) & (v.z == dr.floor(v.z))
-    return dr.select(sphere, dr.select(meant, 0, number * (w + largest)), plane)
 
 
 def coordinate_errors(p: Any, n: Any, d: Any, t: Any, off: Any) -> Any:

@@ -1,0 +1,103 @@
+"""Intersection of rays with a few spheres and convex polyhedra inside the kernel.
+
+Every surface becomes its own piece of code, so that there is neither a traversal nor a call: fastest for the dozens of
+surfaces of a typical course scene, and its kernel grows with their number.
+"""
+
+import math
+from typing import Any
+
+import drjit as dr
+import mitsuba as mi
+
+from mitsuba_plugins.intersection.contacts import LightContacts
+from mitsuba_plugins.intersection.geometry import Surface
+from mitsuba_plugins.intersection.passages import Crossing, first_crossing
+from mitsuba_plugins.intersection.primitives import ListedRows, Primitives
+from mitsuba_plugins.intersection.rays import NOTHING, Ray, Real, largest
+from mitsuba_plugins.intersection.rounding import most_blur
+from mitsuba_plugins.intersection.surfaces import ExactSurfaces
+
+
+class AnalyticSurfaces(ExactSurfaces):
+    """Surfaces whose numbers are kernel arguments: scenes that differ in numbers only share one compiled kernel."""
+
+    def __init__(self, types: Real, surfaces: list[Surface], primitives: Primitives, contacts: LightContacts) -> None:
+        super().__init__(primitives, contacts)
+        self._types = types
+        self._kinds = [surface.kind for surface in surfaces]
+        self._rows = [[types.Vector4(*row) for row in surface.shape.rows] for surface in surfaces]
+        self._bounds = [self._bound(surface) for surface in surfaces]
+        dr.make_opaque(self._rows, self._bounds)
+
+    def _bound(self, surface: Surface) -> tuple[Any, Any] | None:
+        """Centre and radius of a sphere around a bounded surface, if it is worth its test."""
+        if surface.box is None or not surface.kind.BOUNDED_FIRST:
+            return None
+        low, high = surface.box
+        center = ((a + b) / 2 for a, b in zip(low, high, strict=True))
+        return self._types.Point3(*center), self._types.Float(math.dist(low, high) / 2)
+
+    def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any, Any]:
+        """As `ExactSurfaces` has it."""
+        reach = largest(ray.o)
+        t_best, t_second = self._types.Float(dr.inf), self._types.Float(dr.inf)
+        close = mi.Bool(False)
+        object_best = mi.UInt32(NOTHING)
+        primitive_best = mi.UInt32(0)
+        for index in range(len(self._kinds)):
+            crossing = self._intersect(index, ray, reach)
+            t = crossing.t
+            close |= crossing.close
+            closer = t < t_best
+            t_second = dr.select(closer, t_best, dr.select((t > t_best) & (t < t_second), t, t_second))
+            t_best = dr.select(closer, t, t_best)
+            object_best = dr.select(closer, index, object_best)
+            primitive_best = dr.select(closer, crossing.primitive, primitive_best)
+        near = most_blur(t_best) * (t_best + reach)
+        close |= (t_second - t_best <= near) | (t_best < near)
+        return t_best, object_best, primitive_best, close
+
+    @dr.syntax
+    def find_blocker(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any]:
+        """As `ExactSurfaces` has it."""
+        found = dr.full(mi.UInt32, NOTHING, dr.width(ray.d))
+        close = dr.full(mi.Bool, False, dr.width(ray.d))
+        if active:
+            reach = largest(ray.o)
+            for index in range(len(self._kinds)):
+                crossing = self._intersect(index, ray, reach)
+                t = crossing.t
+                close |= crossing.close | (t < most_blur(t) * reach)
+                blocks = t < distance
+                if dr.hint(index in self.contacts.objects, mode="scalar"):
+                    blocks &= ~self.contacts.lies_at(light, crossing, ray.d, active)
+                found = dr.select(blocks, mi.UInt32(index), found)
+        return found, close
+
+    def _intersect(self, index: int, ray: Ray, reach: Any) -> Crossing:
+        """Where rays cross one surface."""
+        bound = self._bounds[index]
+        if bound is not None:
+            return self._intersect_bounded(index, bound, ray, reach)
+        return self._intersect_rows(index, ray, reach)
+
+    @dr.syntax
+    def _intersect_bounded(self, index: int, bound: tuple[Any, Any], ray: Ray, reach: Any) -> Crossing:
+        """A branch and no mask: most packets of rays pass by most surfaces and save their primitives."""
+        t = dr.full(self._types.Float, dr.inf, dr.width(ray.d))
+        enters = dr.full(mi.Bool, False, dr.width(ray.d))
+        primitive = dr.zeros(mi.UInt32, dr.width(ray.d))
+        close = dr.full(mi.Bool, False, dr.width(ray.d))
+        center, radius = bound
+        f = ray.o - center
+        b = -dr.dot(f, ray.d)
+        if (dr.squared_norm(f + b * ray.d) <= radius * radius) & (b > -radius):
+            crossing = self._intersect_rows(index, ray, reach)
+            t, enters, primitive, close = crossing.t, crossing.enters, crossing.primitive, crossing.close
+        return Crossing(t, enters, primitive, 0, close)
+
+    def _intersect_rows(self, index: int, ray: Ray, reach: Any) -> Crossing:
+        own = ray.object == index
+        rows = ListedRows(self.primitives.first[index], self._rows[index])
+        return first_crossing(self._kinds[index].passage(rows, ray, own, reach), ray, own, reach)

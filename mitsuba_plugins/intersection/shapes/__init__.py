@@ -1,0 +1,1 @@
+"""The kinds of shapes, a module each, and the table of them."""

@@ -1,0 +1,67 @@
+"""What a ray meets: the first of the exact surfaces, and the point and the normal there."""
+
+from typing import Any
+
+import drjit as dr
+
+from mitsuba_plugins.arithmetic import quotient
+from mitsuba_plugins.intersection.contacts import LightContacts
+from mitsuba_plugins.intersection.primitives import Primitives
+from mitsuba_plugins.intersection.rays import NOTHING, Hit, Ray, largest, origin_error, shadow_spread, spawn
+from mitsuba_plugins.intersection.rounding import decides_ties, most_blur
+from mitsuba_plugins.intersection.ties import Ties
+
+
+class ExactSurfaces:
+    """What a ray meets, the point and the normal from the exact surfaces; subclasses know how to search them.
+
+    Masks of active rays come from `lanes`.
+    """
+
+    def __init__(self, primitives: Primitives, contacts: LightContacts) -> None:
+        self.primitives = primitives
+        self.contacts = contacts
+        self._ties = Ties(primitives, contacts)
+
+    def closest(self, ray: Ray, active: Any) -> Hit:
+        """The first surface that a ray meets, the point moved onto it to shed the error along the normal."""
+        t, index, primitive, close = self.find_closest(ray, active)
+        ties = close is not None and decides_ties(t)
+        if ties:
+            t, index, primitive = self._ties.closest(ray, t, index, primitive, active & close)
+        valid = active & (index != NOTHING)
+        p = type(ray.o)(ray.o + t * ray.d)
+        surface = self.primitives.surface_at(ray, index, primitive, p, valid, largest(ray.o))
+        p, n = surface.p, surface.n
+        inside = dr.select(index == ray.object, ray.inside, dr.dot(n, ray.d) > 0)
+        off = ray.t_min + surface.error + t * ray.spread
+        error = origin_error(p, t)
+        if ties:
+            # A ray that is off meets the surface farther off the more it slants.
+            along = quotient(off, dr.abs(dr.dot(n, ray.d)))
+            error += dr.minimum(along, most_blur(t) * (largest(p) + t))
+        return Hit(valid, t, index, primitive, p, n, inside, off, error, quotient(error, surface.radius))
+
+    def spawn(self, hit: Hit, d: Any, inside: Any, spread: Any) -> Ray:
+        """The ray that leaves `hit` in direction `d`, on the given side of the object."""
+        return spawn(hit, d, inside, spread)
+
+    def blocker(self, hit: Hit, d: Any, distance: Any, light: Any, active: Any) -> Any:
+        """Some object between `hit` and a light at `distance` in direction `d`, on the side it was seen from."""
+        ray = spawn(hit, d, hit.inside, shadow_spread(hit, distance))
+        found, close = self.find_blocker(ray, distance, light, active)
+        if close is None or not decides_ties(distance):
+            return found
+        return self._ties.blocker(ray, distance, light, found, active & close)
+
+    def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any, Any]:
+        """Distance (infinite for none), object (NOTHING for none) and primitive of the first hit, and whether it was
+        close to a tie.
+        """
+        raise NotImplementedError
+
+    def find_blocker(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any]:
+        """Some object that the ray meets before it comes to a light at `distance`, or NOTHING, and whether that was
+        close to a tie.
+        """
+        raise NotImplementedError
