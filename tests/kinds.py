@@ -12,6 +12,7 @@ SHAPES = {
     "sphere": "sphere 0 0 0 1",
     "polyhedron": "polyhedron 7  1 0 0 -1  -1 0 0 -1  0 1 .1 -.9  0 -1 0 -.9  0 0 1 -1  0 0 -2 -2  1 1 1 -9",
     "plane": "plane .1 1 .2 .3",
+    "quadric": "quadric 1 1.5 2 .3 -.2 .1 .2 0 -.1 -1",
 }
 """By its keyword: a body about the origin, about 1 in size unless it has no bounds."""
 

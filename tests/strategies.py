@@ -4,6 +4,7 @@ from collections.abc import Sequence
 from math import hypot
 from pathlib import Path
 
+from hypothesis import assume
 from hypothesis import strategies as st
 
 from converter.scene.model import (
@@ -15,6 +16,7 @@ from converter.scene.model import (
     Pigment,
     Plane,
     Polyhedron,
+    Quadric,
     Scene,
     Shape,
     Solid,
@@ -22,6 +24,7 @@ from converter.scene.model import (
     Texmap,
     Vector,
 )
+from converter.shapes.quadric_form import kind_of
 
 coordinates = st.floats(-1000, 1000)
 portions = st.floats(0, 1)
@@ -85,9 +88,20 @@ def polyhedra(draw: st.DrawFn, most_planes: int = 8) -> Polyhedron:
     return Polyhedron(tuple(planes))
 
 
+@st.composite
+def quadrics(draw: st.DrawFn) -> Quadric:
+    """Quadrics of every kind that has a surface."""
+    few = st.integers(-4, 4).map(float)
+    a, b, c, d, e, f = draw(st.tuples(*[few] * 6))
+    g, h, i, j = draw(st.one_of(st.tuples(*[few] * 4), st.tuples(*[coordinates] * 4)))
+    shape = Quadric((a, b, c, d, e, f, g, h, i, j))
+    assume(kind_of(shape).name)
+    return shape
+
+
 def shapes() -> st.SearchStrategy[Shape]:
-    """Spheres and polyhedra."""
-    return st.one_of(st.builds(Sphere, vectors, st.floats(0.01, 1000)), polyhedra())
+    """Of every kind."""
+    return st.one_of(st.builds(Sphere, vectors, st.floats(0.01, 1000)), polyhedra(), quadrics())
 
 
 @st.composite

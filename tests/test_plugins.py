@@ -317,9 +317,9 @@ def test_quotients_are_rounded_once(mi):
 HOST_DIVISIONS = {
     "intersection/analytic.py": {"_bound"},
     "intersection/columns.py": {"column"},
-    "intersection/contacts.py": {"__init__"},
     "intersection/rounding.py": {"camera_errors"},
     "intersection/shapes/polyhedron.py": {"contacts", "_normalised"},
+    "intersection/shapes/quadric.py": {"_form", "_rows", "_anchor", "_contact"},
     "intersection/shapes/sphere.py": {"contacts"},
     "integrators/pace.py": {"__init__", "rows", "samples", "launch"},
     "trial.py": {"_memory"},

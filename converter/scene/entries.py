@@ -122,9 +122,6 @@ def object_(reader: Reader, at: int, k: int) -> tuple[Object | None, int]:
     shape: Shape | None
     if word in SHAPE_READERS:
         shape, end = SHAPE_READERS[word](reader, at + 2)
-    elif word == "quadric":
-        reader.complain(at + 2, f"quadric is {NOT_YET}")
-        shape, end = None, reader.after(at, 13)
     elif word == "csg":
         raise Lost(at + 2, f"csg is {NOT_YET}")
     else:

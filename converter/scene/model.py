@@ -89,7 +89,14 @@ class Polyhedron:
     planes: tuple[Plane, ...]
 
 
-Shape = Sphere | Polyhedron
+@dataclass(frozen=True, slots=True)
+class Quadric:
+    """Where A x^2 + B y^2 + C z^2 + D xy + E xz + F yz + G x + H y + I z + J <= 0, the numbers in this order."""
+
+    coefficients: tuple[float, float, float, float, float, float, float, float, float, float]
+
+
+Shape = Sphere | Polyhedron | Quadric
 
 
 @dataclass(frozen=True, slots=True)

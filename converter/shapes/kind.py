@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar
 
-from converter.scene.model import Plane, Vector
+from converter.scene.model import Plane, Shape, Vector
 
 if TYPE_CHECKING:
     import numpy as np
@@ -126,6 +126,10 @@ class ShapeKind(Protocol[S]):
         """What it is in a scene whose lengths are `factor` times as large; its numbers may be infinite there."""
         ...
 
+    def simplified(self, shape: S) -> Shape:
+        """The simplest shape that is the same: itself, unless that is less to model."""
+        ...
+
     # ---- Where it is
 
     def facts(self, shapes: Sequence[S]) -> list[Facts]:
@@ -178,8 +182,8 @@ class ShapeKind(Protocol[S]):
         """From a point to its surface; if it lies on that, to the next face."""
         ...
 
-    def radius_of_curvature(self, shape: S) -> float:
-        """The smallest one that its surfaces have anywhere, a length; infinite if they are flat."""
+    def radius_of_curvature(self, shape: S, p: "Floats") -> float:
+        """One that its surface has at a point of it, or a smaller one, a length; infinite if it is flat."""
         ...
 
     # ---- Renderers

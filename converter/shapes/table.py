@@ -3,11 +3,15 @@
 from collections.abc import Mapping
 from typing import Any
 
-from converter.scene.model import Polyhedron, Shape, Sphere
-from converter.shapes import polyhedron, sphere
+from converter.scene.model import Polyhedron, Quadric, Shape, Sphere
+from converter.shapes import polyhedron, quadric, sphere
 from converter.shapes.kind import ShapeKind
 
-SHAPE_KINDS: Mapping[type[Shape], ShapeKind[Any]] = {Sphere: sphere, Polyhedron: polyhedron}
+SHAPE_KINDS: Mapping[type[Shape], ShapeKind[Any]] = {
+    Sphere: sphere,
+    Polyhedron: polyhedron,
+    Quadric: quadric,
+}
 """The module of each class of shapes."""
 
 SHAPE_READERS = {word: read for kind in SHAPE_KINDS.values() for word, read in kind.READERS.items()}

@@ -7,6 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from converter.pigments.table import pigment_kind
+from converter.scene.geometry import simplified
 from converter.scene.model import Object, Scene
 from converter.scene.needs import SceneNeeds, scene_needs
 from converter.scene.settings import Settings
@@ -51,6 +52,7 @@ def povray_scene(scene: Scene, settings: Settings, name: str = "scene") -> Povra
         ExportError: POV-Ray has no numbers for it.
 
     """
+    scene = simplified(scene)
     factor = suitable_scale(scene, scene_needs(scene, settings))
     scene = scaled(scene, factor)
     needs = scene_needs(scene, settings)

@@ -71,7 +71,7 @@ class AnalyticSurfaces(ExactSurfaces):
                 close |= crossing.close | (t < most_blur(t) * reach)
                 blocks = t < distance
                 if dr.hint(index in self.contacts.objects, mode="scalar"):
-                    blocks &= ~self.contacts.lies_at(light, crossing.primitive, ray.d, t, distance, active)
+                    blocks &= ~self.contacts.lies_at(light, crossing, ray.d, active)
                 found = dr.select(blocks, mi.UInt32(index), found)
         return found, close
 
@@ -88,6 +88,7 @@ class AnalyticSurfaces(ExactSurfaces):
     ) -> Crossing:
         """A branch and no mask: most packets of rays pass by most surfaces and save their primitives."""
         t = dr.full(self._types.Float, dr.inf, dr.width(ray.d))
+        enters = dr.full(mi.Bool, False, dr.width(ray.d))
         primitive = dr.zeros(mi.UInt32, dr.width(ray.d))
         close = dr.full(mi.Bool, False, dr.width(ray.d))
         center, radius = bound
@@ -95,8 +96,8 @@ class AnalyticSurfaces(ExactSurfaces):
         b = -dr.dot(f, ray.d)
         if (dr.squared_norm(f + b * ray.d) <= radius * radius) & (b > -radius):
             crossing = self._intersect_rows(index, ray, reach, which_piece)
-            t, primitive, close = crossing.t, crossing.primitive, crossing.close
-        return Crossing(t, primitive, 0, close)
+            t, enters, primitive, close = crossing.t, crossing.enters, crossing.primitive, crossing.close
+        return Crossing(t, enters, primitive, 0, close)
 
     def _intersect_rows(self, index: int, ray: Ray, reach: Any, which_piece: bool) -> Crossing:
         own = ray.object == index

@@ -14,6 +14,7 @@ from numpy.typing import NDArray
 
 from mitsuba_plugins.intersection.columns import column
 from mitsuba_plugins.intersection.geometry import Surface
+from mitsuba_plugins.intersection.passages import Crossing
 from mitsuba_plugins.intersection.rays import Ray, Real
 from mitsuba_plugins.intersection.shapes.kind import ShapeKind, Vector
 
@@ -25,12 +26,12 @@ Numbers = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """A primitive that a point lies on: its object, the outward unit normal there, and the radius; 0 of a plane."""
+    """A primitive that a point lies on: its object, the outward unit normal there, and how it is bent."""
 
     object: int
     primitive: int
     normal: Vector
-    radius: float
+    curvature: float
 
 
 class Contacts:
@@ -38,33 +39,29 @@ class Contacts:
 
     def __init__(self, surfaces: "Sequence[Surface]") -> None:
         self._surfaces = surfaces
-        counts = [len(surface.shape.given) for surface in surfaces]
-        self._object = np.repeat(np.arange(len(surfaces)), counts)
-        kinds = list({id(surface.kind): surface.kind for surface in surfaces}.values())
-        self._by_kind = [(kind, *self._primitives_of(kind)) for kind in kinds]
-
-    def _primitives_of(self, kind: ShapeKind) -> tuple[NDArray[np.intp], Numbers]:
-        """The primitives of all shapes of a kind: their indices and their rows (n, 4), as given."""
-        primitives = np.flatnonzero(np.array([surface.kind is kind for surface in self._surfaces])[self._object])
-        return primitives, _rows([row for s in self._surfaces if s.kind is kind for row in s.shape.given])
+        # By kind, in the order of objects: each primitive's object and index, and its numbers as given.
+        self._primitives: dict[int, tuple[ShapeKind, list[tuple[int, int]], list[Sequence[float]]]] = {}
+        first = 0
+        for index, surface in enumerate(surfaces):
+            shape = surface.shape
+            _, primitives, numbers = self._primitives.setdefault(id(surface.kind), (surface.kind, [], []))
+            primitives.extend((index, first + k * surface.kind.ROWS) for k in range(len(shape.given)))
+            numbers.extend(shape.given)
+            first += len(shape.rows)
 
     def of(self, point: Numbers) -> list[Contact]:
         """The contacts of a point (3,), in the order of the primitives."""
         found = [
-            Contact(int(self._object[primitives[at.row]]), int(primitives[at.row]), at.normal, at.radius)
-            for kind, primitives, rows in self._by_kind
-            for at in kind.contacts(point, rows)
+            Contact(*primitives[at.row], at.normal, at.curvature)
+            for kind, primitives, numbers in self._primitives.values()
+            for at in kind.contacts(point, np.array(numbers, dtype=np.float64))
         ]
         return sorted(found, key=lambda contact: contact.primitive)
 
     def is_on_body(self, point: Numbers, contact: Contact) -> bool:
         """Whether a point is on the body, and not in a face's plane beside the face."""
         surface = self._surfaces[contact.object]
-        return surface.kind.contains(point, _rows(surface.shape.given))
-
-
-def _rows(rows: Any) -> Numbers:
-    return np.array(rows, dtype=np.float64).reshape(-1, 4)
+        return surface.kind.contains(point, np.array(surface.shape.given, dtype=np.float64))
 
 
 class LightContacts:
@@ -79,24 +76,23 @@ class LightContacts:
         """The objects that some light lies on."""
         self._end = column(mi.UInt32, np.cumsum([len(of_one) for of_one in by_light], dtype=np.uint32))
         self._primitive = column(mi.UInt32, [contact.primitive for contact in found])
-        self._rows = column(types.Float, [number for c in found for number in (*c.normal, c.radius)] or [0.0] * 4)
+        self._rows = column(types.Float, [x for c in found for x in (*c.normal, c.curvature)] or [0.0] * 4)
 
     @dr.syntax
-    def lies_at(self, light: Any, primitive: Any, d: Any, t: Any, distance: Any, active: Any) -> Any:
-        """Whether a ray that leads to a light at `distance` and meets a primitive at `t` meets it where the light is.
+    def lies_at(self, light: Any, crossing: Crossing, d: Any, active: Any) -> Any:
+        """Whether rays of direction `d` that lead to a light cross there what the light lies on.
 
-        A plane that the light lies on is met there and nowhere else; a sphere is, if not there, then nearer by
-        2 r |n . d|, with n its normal at the light.
+        A plane they do cross there, and nowhere else; of the two crossings of another primitive it is the one where
+        they enter if they enter at the light.
         """
         result = mi.Bool(False)
         if dr.hint(bool(self.objects), mode="scalar"):
-            result = dr.full(mi.Bool, False, dr.width(primitive, t, active))
+            result = dr.full(mi.Bool, False, dr.width(crossing.primitive, d, active))
             i, end = self._range(light, active)
             while active & (i < end):
                 row = dr.gather(self._types.Vector4, self._rows, i, active)
-                slack = row.w * dr.abs(dr.dot(self._types.Vector3(row.xyz), d))
-                there = (row.w == 0) | (t > distance - slack)
-                result |= there & (primitive == dr.gather(mi.UInt32, self._primitive, i, active))
+                there = (row.w == 0) | (crossing.enters == (dr.dot(self._types.Vector3(row.xyz), d) < 0))
+                result |= there & (crossing.primitive == dr.gather(mi.UInt32, self._primitive, i, active))
                 i += 1
         return result
 
@@ -108,8 +104,8 @@ class LightContacts:
             result = dr.full(mi.Bool, False, dr.width(primitive, active))
             i, end = self._range(light, active)
             while active & (i < end):
-                radius = dr.gather(self._types.Float, self._rows, 4 * i + 3, active)
-                result |= (radius == 0) & (primitive == dr.gather(mi.UInt32, self._primitive, i, active))
+                curvature = dr.gather(self._types.Float, self._rows, 4 * i + 3, active)
+                result |= (curvature == 0) & (primitive == dr.gather(mi.UInt32, self._primitive, i, active))
                 i += 1
         return result
 
@@ -126,7 +122,7 @@ class EyeContact:
         found = [contact for contact in contacts.of(eye) if contacts.is_on_body(eye, contact)]
         self._contacts = [contact for contact in found if contact.object == found[0].object]
         self._normals = [types.Vector3(*contact.normal) for contact in self._contacts]
-        self._curvature = types.Float(sum(1 / contact.radius for contact in self._contacts if contact.radius > 0))
+        self._curvature = types.Float(sum(contact.curvature for contact in self._contacts))
         dr.make_opaque(self._normals, self._curvature)
 
     def start(self, ray: Ray) -> Ray:
@@ -136,7 +132,7 @@ class EyeContact:
         contact = self._contacts[0]
         leads_inside = mi.Bool(True)
         # Rays along a plane, too, for a body is closed; not those that touch a sphere. Eye and directions may be off.
-        bound = ray.spread if contact.radius == 0 else -(ray.spread + ray.t_min * self._curvature)
+        bound = ray.spread if contact.curvature == 0 else -(ray.spread + ray.t_min * self._curvature)
         for normal in self._normals:
             leads_inside &= dr.dot(normal, ray.d) < bound
         width = dr.width(ray.d)

@@ -7,7 +7,10 @@ which ties go:
      "object_1": {"material": "name of a BSDF", "planes": {"0": [a, b, c, d], ...},
                   "box": [its lower corner, its upper corner] or null where it is unbounded,
                   "triangles": [plane of each triangle of its mesh], if it has one,
-                  "deviation": largest distance of a mesh vertex from its planes, likewise}}
+                  "deviation": largest distance of a mesh vertex from its planes, likewise},
+     "object_2": {"material": "name of a BSDF", "quadric": [A, B, C, D, E, F, G, H, I, J], "box": likewise}}
+
+A quadric is where A x^2 + B y^2 + C z^2 + D xy + E xz + F yz + G x + H y + I z + J <= 0; it needs no box.
 
 JSON writes the shortest digits that read back as the same double, so that nothing is lost in a file.
 """

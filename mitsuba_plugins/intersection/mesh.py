@@ -64,11 +64,12 @@ class MeshSurfaces(ExactSurfaces):
             pi = self._scene.ray_intersect_preliminary(probe, coherent=False, active=searching)
             met = searching & pi.is_valid()
             index, index_primitive = self._found.find(pi, met)
-            t_exact = self.primitives.intersect_one(ray, index, index_primitive, met, reach).t
+            crossing = self.primitives.intersect_one(ray, index, index_primitive, met, reach)
+            t_exact = crossing.t
             allowed = t_exact < dr.inf
             accepted = met & allowed & (t_exact < distance)
             if dr.hint(light is not None, mode="scalar"):
-                accepted &= ~self.contacts.lies_at(light, index_primitive, ray.d, t_exact, distance, accepted)
+                accepted &= ~self.contacts.lies_at(light, crossing, ray.d, accepted)
             t = dr.select(accepted, t_exact, t)
             found = dr.select(accepted, index, found)
             primitive = dr.select(accepted, index_primitive, primitive)

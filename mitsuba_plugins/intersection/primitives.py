@@ -15,7 +15,7 @@ from mitsuba_plugins.intersection.shapes.table import SHAPE_KINDS
 
 
 class Primitives:
-    """One row for each sphere and each of a polyhedron's planes, in the order of their objects."""
+    """The rows of all shapes, in the order of their objects."""
 
     def __init__(self, types: Real, surfaces: list[Surface]) -> None:
         rows: list[Any] = []
@@ -26,6 +26,8 @@ class Primitives:
             rows.extend(surface.shape.rows)
         self.types = types
         present = {id(surface.kind): surface.kind for surface in surfaces}
+        self.any_concave = not all(kind.CONVEX for kind in present.values())
+        """Whether rays may meet again what they leave."""
         self._kinds = list(present.values()) or list(SHAPE_KINDS.values())[:1]  # of nothing any kind will do
         self._rows = column(types.Float, rows)
         self._kind = column(mi.UInt32, [self._kinds.index(surface.kind) for surface in surfaces])
@@ -66,8 +68,13 @@ class Primitives:
     def surface_at(self, ray: Ray, index: Any, primitive: Any, p: Any, active: Any, reach: Any) -> SurfacePoint:
         """The point of a primitive nearest to a point near it that a ray has met."""
         own = ray.object == index
-        row = self.row(primitive, active)
-        return self._by_kind(index, active, lambda kind, _: kind.surface_at(row, p, ray, own, reach))
+        first = self.row(primitive, active)  # in one gather for all kinds
+
+        def surface_at(kind: Any, active: Any) -> SurfacePoint:
+            rows = GatheredRows(self, primitive, mi.UInt32(1), active, dr.width(ray.d, index), first)
+            return kind.surface_at(rows, p, ray, own, reach)
+
+        return self._by_kind(index, active, surface_at)
 
     def _by_kind(self, index: Any, active: Any, answer: Callable[[Any, Any], Any]) -> Any:
         """What `answer(kind, active)` gives for the kind of each object."""
@@ -85,7 +92,10 @@ class Primitives:
 class GatheredRows:
     """The rows of primitives from `first` on, `count` of them, that differ from ray to ray; see `Rows`."""
 
-    def __init__(self, primitives: Primitives, first: Any, count: Any, active: Any, width: int) -> None:
+    def __init__(
+        self, primitives: Primitives, first: Any, count: Any, active: Any, width: int, first_row: Any = None
+    ) -> None:
+        self._first_row = first_row
         self._primitives = primitives
         self._first = first
         self._count = count
@@ -96,9 +106,11 @@ class GatheredRows:
         """The index of the first."""
         return self._first
 
-    def row(self) -> Any:
-        """The first row."""
-        return self._primitives.row(self._first, self._active)
+    def row(self, k: int = 0) -> Any:
+        """The row k after the first."""
+        if k == 0 and self._first_row is not None:
+            return self._first_row
+        return self._primitives.row(self._first + k, self._active)
 
     @dr.syntax
     def fold(self, step: Callable[[Any, Any, Any], Any], state: Any) -> Any:
@@ -124,9 +136,9 @@ class ListedRows:
         """The index of the first."""
         return mi.UInt32(self._first)
 
-    def row(self) -> Any:
-        """The first row."""
-        return self._rows[0]
+    def row(self, k: int = 0) -> Any:
+        """The row k after the first."""
+        return self._rows[k]
 
     def fold(self, step: Callable[[Any, Any, Any], Any], state: Any) -> Any:
         """Code for each of them."""

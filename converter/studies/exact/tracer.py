@@ -21,6 +21,7 @@ from converter.scene.model import (
     Finish,
     Pigment,
     Polyhedron,
+    Quadric,
     Scene,
     Shape,
     Solid,
@@ -44,7 +45,7 @@ TIES = {
     "light in plane": "a light lies in the plane of what it might light",
     "at light": "a shadow ray meets a body at the light",
     "at start": "a ray meets another body where it starts",
-    "tangent": "a ray touches a ball",
+    "tangent": "a ray touches a ball, or a quadric",
     "critical": "a ray leaves at the critical angle",
 }
 """Every kind of tie."""
@@ -65,7 +66,7 @@ class Ray:
 
 @dataclass(frozen=True, slots=True)
 class Hit:
-    """What a ray meets, at `distance` times its direction; `plane` is -1 for a sphere; `inside`: met from within."""
+    """What a ray meets, at `distance` times its direction; `plane` is -1 where it is none; `inside`: from within."""
 
     distance: Number
     object: int
@@ -173,9 +174,11 @@ class ExactTracer:
 
     def _meet(self, index: int, ray: Ray) -> Hit | None:
         """Where the ray first meets an object, beyond its own start."""
-        if ray.object == index and not ray.inside:
-            return None  # objects are convex
         shape = self._shapes[index]
+        if isinstance(shape, _Quadric):
+            return self._meet_quadric(index, shape, ray)
+        if ray.object == index and not ray.inside:
+            return None  # the others are convex
         if isinstance(shape, _Ball):
             return self._meet_ball(index, shape, ray)
         return self._meet_polyhedron(index, shape, ray)
@@ -200,6 +203,31 @@ class ExactTracer:
         root = self._numbers.root(discriminant)
         outside = self._sign(c) > 0
         return Hit((b - root) / a if outside else (b + root) / a, index, -1, not outside)
+
+    def _meet_quadric(self, index: int, quadric: "_Quadric", ray: Ray) -> Hit | None:
+        """The roots of a t^2 + 2 b t + c = 0, where that changes its sign."""
+        a, b, c = quadric.along(ray.origin, ray.direction)
+        if ray.object == index:
+            inside, roots = ray.inside, self._other_root(a, b)
+        elif self._sign(c) == 0:
+            self._ties.add("at start")
+            inside, roots = (self._sign(b) or self._sign(a)) < 0, self._other_root(a, b)
+        elif self._sign(a) == 0:
+            inside, roots = self._sign(c) < 0, [-c / (2 * b)] if self._sign(b) else []
+        else:
+            discriminant = b * b - a * c
+            if self._sign(discriminant) == 0 and self._sign(a) * self._sign(b) < 0:
+                self._ties.add("tangent")
+            if self._sign(discriminant) <= 0:
+                return None
+            root = self._numbers.root(discriminant)
+            inside, roots = self._sign(c) < 0, [(-b - root) / a, (-b + root) / a]
+        ahead = [t for t in roots if self._sign(t) > 0]
+        return Hit(min(ahead), index, -1, inside) if ahead else None
+
+    def _other_root(self, a: Number, b: Number) -> list[Number]:
+        """Of a t^2 + 2 b t = 0 but 0; where that is a root twice, none."""
+        return [-2 * b / a] if self._sign(a) and self._sign(b) else []
 
     def _meet_polyhedron(self, index: int, planes: "Sequence[_Plane]", ray: Ray) -> Hit | None:
         """The ray is inside between the last plane that it enters and the first that it leaves."""
@@ -246,7 +274,7 @@ class ExactTracer:
         finish = self._scene.finishes[thing.finish]
         point = _sum(ray.origin, _scaled(ray.direction, hit.distance))
         shape = self._shapes[hit.object]
-        normal = _difference(point, shape.center) if isinstance(shape, _Ball) else shape[hit.plane].normal
+        normal = shape[hit.plane].normal if isinstance(shape, list) else shape.normal(point)
         if hit.inside:
             normal = _scaled(normal, -1)
         pigment = self._colors[thing.pigment](point)
@@ -372,13 +400,15 @@ class ExactTracer:
         x, y, z = (self._numbers.number(c) for c in v)
         return (x, y, z)
 
-    def _shape(self, shape: Shape) -> "_Ball | list[_Plane]":
+    def _shape(self, shape: Shape) -> "_Ball | list[_Plane] | _Quadric":
         number = self._numbers.number
         match shape:
             case Sphere(center, radius):
                 return _Ball(self._vector(center), number(radius))
             case Polyhedron(planes):
                 return [_Plane(self._vector((a, b, c)), number(d)) for a, b, c, d in planes]
+            case Quadric(coefficients):
+                return _Quadric(tuple(map(number, coefficients)))
         assert_never(shape)
 
 
@@ -386,6 +416,33 @@ class ExactTracer:
 class _Ball:
     center: Vec
     radius: Number
+
+    def normal(self, point: Vec) -> Vec:
+        """Outward, of any length."""
+        return _difference(point, self.center)
+
+
+@dataclass(frozen=True, slots=True)
+class _Quadric:
+    """The numbers A to J."""
+
+    numbers: tuple[Number, ...]
+
+    def along(self, p: Vec, d: Vec) -> tuple[Number, Number, Number]:
+        """The numbers a, b and c of a t^2 + 2 b t + c, which it is at p + t d."""
+        g, h, i, j = self.numbers[6:]
+        gradient = self.normal(p)
+        constant = (_dot(p, gradient) + _dot((g, h, i), p)) / 2 + j
+        return _dot(d, _difference(self.normal(d), (g, h, i))) / 2, _dot(d, gradient) / 2, constant
+
+    def normal(self, point: Vec) -> Vec:
+        """The gradient, which points out, and may have any length."""
+        (x, y, z), (a, b, c, d, e, f, g, h, i, _) = point, self.numbers
+        return (
+            2 * a * x + d * y + e * z + g,
+            2 * b * y + d * x + f * z + h,
+            2 * c * z + e * x + f * y + i,
+        )
 
 
 @dataclass(frozen=True, slots=True)
