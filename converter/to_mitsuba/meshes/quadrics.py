@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Triangles = NDArray[np.int64]
 
-OFF = 1 / 8
+OFF = 1 / 32
 """How much of a pixel the middle of an edge may be off the surface."""
-MOST_TRIANGLES = 1 << 18
+MOST_TRIANGLES = 1 << 19
 """Of one mesh, about: what asks for more stays coarser."""
 AROUND, STEP = 16, 0.5
 """Coarse meshes: corners around an axis, and steps along hyperbolas, in units of their hyperbolic angle."""
