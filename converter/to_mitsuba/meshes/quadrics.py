@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Triangles = NDArray[np.int64]
 
-OFF = 1 / 8
+OFF = 1 / 32
 """How much of a pixel the middle of an edge may be off the surface."""
-MOST_TRIANGLES = 1 << 18
+MOST_TRIANGLES = 1 << 19
 """Of one mesh, about: what asks for more stays coarser."""
 AROUND, STEP = 16, 0.5
 """Coarse meshes: corners around an axis, and steps along hyperbolas, in units of their hyperbolic angle."""
@@ -38,6 +38,9 @@ HALVINGS = 12
 """Coarse meshes: how often the distance to the end is halved toward the middle."""
 ROUNDING = 2.0**-44
 """What places may be off, as a share of their coordinates along the axes."""
+FAR = 16.0
+"""What is told of how far a mesh is off holds as far as this many times `View.near`, twice as far as what is looked at:
+rays start off their surfaces by as much, which must not be more than a share of a pixel."""
 STRETCH = 2.0
 """How long an edge may be next to its distance from the eye: what one pixel allows must not vary much along it."""
 
@@ -65,7 +68,7 @@ class QuadricMesh:
         vertices: (n, 3) float64, scene units.
         normals: (n, 3) float64, of length 1, of the exact surface, outward. A cone's tip has a vertex a triangle.
         triangles: (m, 3) int64, counterclockwise as seen from outside.
-        deviation: how far triangles near the eye, with float32 corners, are off the surface, about.
+        deviation: how far triangles, with float32 corners, are off the surface, about; none that are far away.
         tilt: the angle by which normals between the vertices are off there, about.
 
     """
@@ -461,15 +464,17 @@ def _with_normals(frame: Frame, points: Floats, triangles: Triangles) -> tuple[F
 
 
 def _errors(frame: Frame, points: Floats, normals: Floats, triangles: Triangles, view: View) -> tuple[float, float]:
-    """How far the middles of triangles near the eye are off the surface, and their normals: `deviation`, `tilt`."""
-    middle = points[triangles].mean(axis=1)
-    distance = np.maximum(np.linalg.norm(middle - frame.of(view.eye), axis=1), view.near)
-    near = distance <= 4 * distance.min()
-    placed = _on_surface(frame, middle[near])
-    off = float(np.linalg.norm(placed - middle[near], axis=1).max())
-    mean, true = _units(normals[triangles[near]].sum(axis=1)), _units(frame.half_gradient(placed))
-    sine = float(np.linalg.norm(np.cross(mean, true), axis=1).max())
-    largest = float(np.abs(points[triangles[near]]).max() + np.abs(frame.origin).max())
+    """How far triangles are off the surface, and their normals, in their middles and those of their edges: `deviation`
+    and `tilt` of those that are seen best.
+    """
+    distance = np.linalg.norm(points[triangles].mean(axis=1) - frame.of(view.eye), axis=1)
+    corners = triangles[distance <= max(FAR * view.near, 2 * distance.min())]
+    shares = np.array([[1, 1, 1], [1, 1, 0], [0, 1, 1], [1, 0, 1]]) / np.array([[3], [2], [2], [2]])
+    middle, mean = ((shares @ rows[corners]).reshape(-1, 3) for rows in (points, normals))
+    placed = _on_surface(frame, middle)
+    off = float(np.linalg.norm(placed - middle, axis=1).max())
+    sine = float(np.linalg.norm(np.cross(_units(mean), _units(frame.half_gradient(placed))), axis=1).max())
+    largest = float(np.abs(points[corners]).max() + np.abs(frame.origin).max())
     return off + largest * 2.0**-24, math.asin(min(sine, 1.0))
 
 
