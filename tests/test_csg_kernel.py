@@ -46,6 +46,9 @@ FACES = [half_space(*plane) for plane in BOX["planes"].values()]
 FLUSH = box([-2, 0.3, -0.8], [-0.9, 1.1, 0.9])
 """It has four planes in common with the box, and lies beside it."""
 
+STEP, WALL = box([-1, -1, -1], [1, -0.2, 0]), box([-1, -1, 0], [1, 1, 1])
+"""The wall's front is seen above the step, whose back lies in the same plane."""
+
 SAME = {
     "one": (BALL, csg([BALL], 0)),
     "a + a": (BALL, csg([BALL, BALL], 0, 1, UNION)),
@@ -61,6 +64,7 @@ SAME = {
         csg([BALL, BITE, BOX], 0, 1, UNION, 2, DIFFERENCE),
         csg([BOX, BALL, BITE], 2, 1, UNION, 0, DIFFERENCE),
     ),
+    "back to front": (csg([WALL, STEP], 0, 1, UNION), csg([STEP, WALL], 0, 1, UNION)),
     "a - b beside it": (BOX, csg([BOX, FLUSH], 0, 1, DIFFERENCE)),
     "a - a": (csg([BALL, BALL], 0, 1, DIFFERENCE), csg([BALL, BOX, BOX], 0, 1, INTERSECTION, 2, DIFFERENCE)),
 }
