@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import drjit as dr
+import mitsuba as mi
 
 from mitsuba_plugins.intersection.rays import Ray
 from mitsuba_plugins.intersection.rounding import most_blur
@@ -37,12 +38,11 @@ class Crossing:
     close: Any  # Bool, whether that was close to a tie
 
 
-def first_crossing(passage: Passage, ray: Ray, own: Any, reach: Any, which_piece: bool = True) -> Crossing:
+def first_crossing(passage: Passage, ray: Ray, own: Any, reach: Any) -> Crossing:
     """The crossing of a passage that counts: the first that is farther than `t_min`.
 
     `own` where the ray starts on the shape. There the crossing that it starts at is known, and not looked for: the ray
-    travels between the two, to the far one, or else away from both. `reach` is the origin's largest coordinate. Planes
-    may tie where it does not matter `which_piece` of the surface is met.
+    travels between the two, to the far one, or else away from both. `reach` is the origin's largest coordinate.
     """
     to_near = ~own & (passage.near > ray.t_min)
     t = dr.select(to_near, passage.near, passage.far)
@@ -51,12 +51,27 @@ def first_crossing(passage: Passage, ray: Ray, own: Any, reach: Any, which_piece
     between = ray.inside if passage.inside_before is False else ray.inside != passage.inside_before
     t = dr.select(own, dr.select(between, dr.maximum(passage.far, 0), dr.inf), t)
     close = passage.close
-    if which_piece and passage.between is not None:
+    if passage.between is not None:
         close |= (t < dr.inf) & (passage.between < most_blur(t) * (reach + t))
     return Crossing(
         t=t,
         enters=to_near if passage.inside_before is False else to_near != passage.inside_before,
         primitive=dr.select(to_near, passage.near_primitive, passage.far_primitive),
-        error=passage.error(to_near, t) if passage.error is not None else 0,
-        close=close,
+        error=type(t)(passage.error(to_near, t) if passage.error is not None else 0),
+        close=mi.Bool(close),
     )
+
+
+@dr.syntax
+def crossing_if(active: Any, ray: Ray, width: int, intersect: Callable[[], Crossing]) -> Crossing:
+    """What `intersect()` gives, in a branch: where packets of rays may all be spared it."""
+    t = dr.full(type(ray.t_min), dr.inf, width)
+    enters = dr.full(mi.Bool, False, width)
+    primitive = dr.zeros(mi.UInt32, width)
+    error = dr.zeros(type(ray.t_min), width)
+    close = dr.full(mi.Bool, False, width)
+    if active:
+        crossing = intersect()
+        t, enters, primitive, close = crossing.t, crossing.enters, crossing.primitive, crossing.close
+        error += crossing.error
+    return Crossing(t, enters, primitive, error, close)
