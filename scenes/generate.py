@@ -334,12 +334,44 @@ class SceneText:
         faces = "\n".join(numbers(plane) for plane in planes)
         self._objects.append(f"{pigment} {finish} polyhedron {len(planes)}\n{faces}")
 
+    def body(self, pigment: int, finish: int, text: str) -> None:
+        """Add an object, its shape written as in the file."""
+        self._objects.append(f"{pigment} {finish} {text}")
+
     def __str__(self) -> str:
         comment = "\n".join(f"# {line}".rstrip() for line in self.comment.strip().splitlines())
         parts = [f"{comment}\n# Computed by {self.script}.\n{self._camera}"]
         for entries in (self._lights, self._pigments, self._finishes, self._objects):
             parts.append("\n".join([str(len(entries)), *entries]))
         return "\n\n".join(parts) + "\n"
+
+
+# ---- Shapes, as they are written -------------------------------------------------------------------------------------
+
+
+def ball(center: Vector, radius: float) -> str:
+    """A ball."""
+    return f"sphere {numbers((*center, radius))}"
+
+
+def half_spaces(planes: Sequence[Plane]) -> str:
+    """What half-spaces have in common."""
+    return "\n".join([f"polyhedron {len(planes)}", *map(numbers, planes)])
+
+
+def quadric(coefficients: Sequence[float]) -> str:
+    """A surface of second degree, by its ten numbers."""
+    return f"quadric {numbers(coefficients)}"
+
+
+def csg(*operands: str) -> str:
+    """Operands, each its sign, a blank, and a shape: `csg("+ sphere 0 0 0 1", "- sphere 1 0 0 1")`."""
+    lines = [f"csg {len(operands)}"]
+    for operand in operands:
+        sign, shape = operand.split(" ", 1)
+        first, *others = shape.splitlines()
+        lines += [f"  {sign} 0 0 {first}", *(f"    {line}" for line in others)]
+    return "\n".join(lines)
 
 
 # ---- Vectors and bodies ----------------------------------------------------------------------------------------------

@@ -164,12 +164,25 @@ def _read_head(reader: Reader, at: int, section: Section) -> tuple[int | None, i
 def _entry_end(reader: Reader, at: int, section: Section) -> int:
     """Index after the entry that begins at the word `at`, as far as the lines tell."""
     end = reader.text.line_end(at)
+    if "csg" in reader.text.cut(at, 3):
+        return _csg_end(reader, at, section)
     while reader.text.has(end):
         line = reader.text.on_line(end)
         if not section.goes_on(reader.text[at], end - at, line):
             break
         end = reader.text.line_end(end)
     return end
+
+
+def _csg_end(reader: Reader, at: int, section: Section) -> int:
+    """Of an entry whose lines may look like entries: the end of the line with its last word, or of the file if it is
+    not whole.
+    """
+    try:
+        _, after = section.read(reader.attempt(), at, 0)
+    except Lost:
+        return HUGE
+    return reader.text.line_end(after - 1)
 
 
 def _last_end(reader: Reader, at: int, end: int, section: Section, k: int) -> int:

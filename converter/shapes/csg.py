@@ -76,10 +76,10 @@ def _read(reader: "Reader", at: int, level: int, leaves: int) -> tuple[Csg, int]
 
 def _sign(reader: "Reader", at: int, head: int, before: int) -> Literal["+", "-", "&"]:
     """The sign at a word, before which there are so many operands."""
-    if not reader.has(at) or whole(reader.text[at]) is not None:
-        raise Lost(head, f"{_announced(reader.text[head])}, found {before} before {reader.ending(at)}")
-    sign = reader.text[at]
+    sign = reader.text[at] if reader.has(at) else ""
     if sign not in OPERATIONS:
+        if reader.begins_entry(at):
+            raise Lost(head, f"{_announced(reader.text[head])}, found {before} before {reader.ending(at)}")
         raise Lost(at, f"expected {SIGNS} before an operand of the csg, {found(sign)}")
     if not before and sign != "+":
         reader.complain(at, f"the first operand of a csg must have '+', found {shown(sign)}")

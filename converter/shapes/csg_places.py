@@ -13,7 +13,7 @@ from converter.shapes.primitives import primitive_kind
 
 MOST_SIDES = 10
 """Surfaces through one point of which all combinations of sides are gone through."""
-TRIES, ENOUGH = 256, 8
+TRIES, ENOUGH = 64, 4
 """Points of a box of which some may be inside, and how many of these are compared."""
 _EVERYWHERE = (-math.inf,) * 3, (math.inf,) * 3
 
@@ -161,10 +161,11 @@ def inside_point(shape: Csg) -> Vector | None:
 
 
 def depth(program: Program, point: Vector) -> float:
-    """A length that the surface is away at least if a point is inside; negative or 0 where it is not."""
-    kinds = [(primitive_kind(leaf), leaf, facts) for leaf, facts in zip(program.leaves, program.facts, strict=True)]
-    nearest = min(kind.distances(leaf, facts, point).nearest for kind, leaf, facts in kinds)
-    return nearest if program.value([kind.contains(leaf, point) for kind, leaf, _ in kinds]) else -nearest
+    """A length that the surface is away at least if a point is inside; 0 where it is not."""
+    if not program.value([primitive_kind(leaf).contains(leaf, point) for leaf in program.leaves]):
+        return 0.0
+    leaves = zip(program.leaves, program.facts, strict=True)
+    return min(primitive_kind(leaf).distances(leaf, facts, point).nearest for leaf, facts in leaves)
 
 
 def _tries(program: Program, region: Region) -> Iterator[Vector]:
