@@ -53,17 +53,29 @@ def silhouette_margin(shape: Csg, origin: Floats, direction: Floats) -> float:
 def edge_margin(shape: Csg, origin: Floats, direction: Floats) -> float:
     """By the faces of each leaf, and by pairs of leaves that the line crosses in one order, and nearby in the other."""
     program = program_of(shape)
-    crossings = [c for c in _crossings(program, origin, direction) if _matters_at(program, c, origin, direction)]
-    leaves = {crossing.leaf for crossing in crossings}
+    crossings = [crossing for crossing in _crossings(program, origin, direction) if crossing.at.cosine]
     margins = [
-        primitive_kind(leaf).edge_margin(leaf, origin, direction)
-        for k, leaf in enumerate(program.leaves)
-        if k in leaves
+        primitive_kind(program.leaves[k]).edge_margin(program.leaves[k], origin, direction)
+        for k, at in crossings
+        if _matters(program, k, origin + at.t * direction)
     ]
-    margins += [
-        tie_margin(a.at, b.at) for a, b in combinations(crossings, 2) if a.leaf != b.leaf and not _coincide(a.at, b.at)
-    ]
-    return min(margins, default=math.inf)
+    pairs = sorted(
+        (tie_margin(a.at, b.at), i, j)
+        for (i, a), (j, b) in combinations(enumerate(crossings), 2)
+        if a.leaf != b.leaf and not _coincide(a.at, b.at)
+    )
+    ties = (tie for tie, i, j in pairs if _order_matters(program, crossings[i], crossings[j], origin, direction))
+    return min([*margins, next(ties, math.inf)])
+
+
+def _order_matters(program: Program, a: _Crossing, b: _Crossing, origin: Floats, direction: Floats) -> bool:
+    """Whether it makes a difference which of two leaves is crossed first."""
+    inside = list(_inside(program, origin + (a.at.t + b.at.t) / 2 * direction))
+    values = set()
+    for first, second in ((a, b), (b, a)):
+        inside[first.leaf], inside[second.leaf] = first.at.cosine < 0, second.at.cosine > 0
+        values.add(program.value(inside))
+    return len(values) == 2
 
 
 def _coincide(a: Intersection, b: Intersection) -> bool:
@@ -99,10 +111,6 @@ def _crossings(program: Program, origin: Floats, direction: Floats) -> list[_Cro
         for at in primitive_kind(leaf).intersections(leaf, origin, direction)
         if math.isfinite(at.t)
     ]
-
-
-def _matters_at(program: Program, crossing: _Crossing, origin: Floats, direction: Floats) -> bool:
-    return _matters(program, crossing.leaf, origin + crossing.at.t * direction)
 
 
 def _matters(program: Program, leaf: int, p: Floats) -> bool:
