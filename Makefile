@@ -2,6 +2,7 @@
 # make test     run the tests
 # make check    run the linters, the type checker, and the compiler with warnings as errors
 # make figures  print the figures of the README, and draw its chart
+# make format   draw the pictures of docs/format.md
 # make stability  find where each method fails, and write docs/stability.md
 # make fuzz     look for inputs that fail, for SECONDS; what it finds is left in out/fuzz
 #
@@ -15,10 +16,10 @@ HEIGHT ?= 600
 SECONDS ?= 60
 
 BIN := .venv/bin
-SOURCES := pyproject.toml CMakeLists.txt $(wildcard native_tracer/src/* student_tracer/src/*)
-CPP := $(wildcard native_tracer/src/*.cpp native_tracer/src/*.h student_tracer/src/*.cpp student_tracer/src/*.h)
+SOURCES := pyproject.toml CMakeLists.txt $(wildcard native_tracer/src/*.* native_tracer/src/*/* student_tracer/src/*)
+CPP := $(wildcard native_tracer/src/*/*.cpp native_tracer/src/*/*.h student_tracer/src/*.cpp student_tracer/src/*.h)
 
-.PHONY: render test check figures stability fuzz clean
+.PHONY: render test check figures format stability fuzz clean
 .DELETE_ON_ERROR:
 
 # Status 1 of the comparison says that the pictures differ, which is no failure to render.
@@ -48,6 +49,10 @@ figures: .venv/.installed
 	$(BIN)/python benchmarks/why.py
 	mkdir -p docs
 	$(BIN)/whitted chart scenes/figure1.in -o docs/figure1.png
+
+format: .venv/.installed
+	for scene in docs/format/*.in; do \
+	    $(BIN)/whitted render $$scene $${scene%.in}.png 240 180 --method native || exit; done
 
 fuzz: .venv/.fuzzer
 	$(BIN)/python fuzzing/fuzz_scenes.py $(SECONDS)

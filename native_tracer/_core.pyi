@@ -57,6 +57,12 @@ class Scene:
 
     @overload
     def add_polyhedron(self, pigment: int, finish: int, planes: Buffer) -> int: ...
+    def add_quadric(self, pigment: int, finish: int, coefficients: Sequence[float]) -> int:
+        """Add a quadric, and return its index.
+
+        The coefficients are A to J, inside where
+        A x^2 + B y^2 + C z^2 + D x y + E x z + F y z + G x + H y + I z + J <= 0.
+        """
 
 class Image:
     """A picture to be drawn into: linear RGB, row 0 on top, black at first."""

@@ -35,7 +35,12 @@ def least_spread(number: Any) -> float:
 
 
 def most_blur(number: Any) -> float:
-    """The square root of epsilon."""
+    """Relative to distances and coordinates; beyond it the bounds, which grow faster than errors, make ties of none."""
+    return 2.0**-32 if decides_ties(number) else 0.0
+
+
+def most_camera_blur(number: Any) -> float:
+    """Of directions from an eye far from the origin, whose bounds have not grown: the square root of epsilon."""
     return math.sqrt(epsilon(number))
 
 
@@ -50,7 +55,7 @@ def camera_errors(types: Any, sensor: Any) -> tuple[Any, Any]:
         return types.Float(0), types.Float(0)
     eye, look_at = (np.ravel(point).tolist() for point in (sensor.eye, sensor.look_at))
     error, other = (max(map(input_error, point)) for point in (eye, look_at))
-    spread = min((error + other) / math.dist(eye, look_at), most_blur(types.Float))
+    spread = min((error + other) / math.dist(eye, look_at), most_camera_blur(types.Float))
     return dr.opaque(types.Float, error), dr.opaque(types.Float, spread)
 
 

@@ -1,0 +1,80 @@
+// The pinhole camera.
+
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <numbers>
+
+#include "tracing/description.h"
+#include "tracing/rounding.h"
+#include "tracing/vector.h"
+
+namespace whitted::WHITTED_ISA {
+
+template <typename Real>
+Vector<Real> vector_of(const Triple& v) {
+    return {static_cast<Real>(v[0]), static_cast<Real>(v[1]), static_cast<Real>(v[2])};
+}
+
+// Along the difference of two points, in double, before any of the two is rounded: half of it where no number holds it.
+inline Triple direction(const Triple& from, const Triple& to) {
+    const auto scaled = [&](double factor) -> Triple {
+        return {factor * to[0] - factor * from[0], factor * to[1] - factor * from[1],
+                factor * to[2] - factor * from[2]};
+    };
+    const Triple whole = scaled(1);
+    const bool holds = std::isfinite(whole[0]) && std::isfinite(whole[1]) && std::isfinite(whole[2]);
+    return holds ? whole : scaled(0.5);
+}
+
+// The same direction at a length whose square neither overflows nor vanishes, in float too; a power of two times `v`,
+// so that no digit is lost.
+inline Triple in_range(const Triple& v) {
+    const double largest = std::max({std::abs(v[0]), std::abs(v[1]), std::abs(v[2])});
+    const int exponent = std::ilogb(largest);
+    return {std::scalbn(v[0], -exponent), std::scalbn(v[1], -exponent), std::scalbn(v[2], -exponent)};
+}
+
+//     forward = normalize(look_at - eye), right = normalize(forward x up), up' = right x forward
+//
+// The file's `up` is a vector that only has to lie on the right side; up' is orthogonal to the view direction.
+template <typename Real>
+class Camera {
+ public:
+    Camera(const CameraDescription& camera, int width, int height)
+        : eye_(vector_of<Real>(camera.eye)),
+          eye_error_(input_error_of_point<Real>(camera.eye)),
+          spread_(least_spread<Real> + (eye_error_ + input_error_of_point<Real>(camera.look_at)) /
+                                           length(vector_of<Real>(direction(camera.eye, camera.look_at)))),
+          forward_(normalize(vector_of<Real>(in_range(direction(camera.eye, camera.look_at))))),
+          right_(normalize(cross(forward_, vector_of<Real>(in_range(camera.up))))),
+          up_(cross(right_, forward_)),
+          width_(static_cast<Real>(width)),
+          height_(static_cast<Real>(height)),
+          scale_(std::tan(static_cast<Real>(camera.fovy) * std::numbers::pi_v<Real> / 360) / height_) {}
+
+    const Vector<Real>& eye() const { return eye_; }
+
+    // How far the eye and directions may be off, see rounding.h.
+    Real eye_error() const { return eye_error_; }
+    Real spread() const { return std::min(spread_, most_camera_blur<Real>); }
+
+    // Unit directions through points of the picture, in pixels from its top-left corner. On the plane at distance 1 the
+    // window is 2 tan(fovy/2) high, and as wide as square pixels make it.
+    Vector<Lanes<Real>> directions(Lanes<Real> column, Lanes<Real> row) const {
+        using L = Lanes<Real>;
+        const L x = (L(2) * column - L(width_)) * L(scale_);
+        const L y = (L(height_) - L(2) * row) * L(scale_);
+        return normalize(Vector<L>(forward_) + x * Vector<L>(right_) + y * Vector<L>(up_));
+    }
+
+ private:
+    Vector<Real> eye_;
+    Real eye_error_, spread_;
+    Vector<Real> forward_, right_, up_;
+    Real width_, height_;
+    Real scale_;  // half a pixel, on the plane at distance 1
+};
+
+}  // namespace whitted::WHITTED_ISA

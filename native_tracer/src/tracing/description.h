@@ -1,0 +1,109 @@
+// What the caller says: a scene and how to draw it, in plain doubles, before it is prepared for any precision.
+
+#pragma once
+
+#include <array>
+#include <cstdint>
+#include <variant>
+#include <vector>
+
+namespace whitted {
+
+using Triple = std::array<double, 3>;
+using Quadruple = std::array<double, 4>;
+
+// ---- Scene --------------------------------------------------------------------------------------------------------
+
+struct CameraDescription {
+    Triple eye{0, 0, 0};
+    Triple look_at{0, 0, -1};
+    Triple up{0, 1, 0};
+    double fovy = 90;  // degrees, the full vertical angle
+};
+
+struct LightDescription {
+    Triple position;
+    Triple color;
+    Triple attenuation;  // a, b, c of 1 / (a + b d + c d^2)
+};
+
+struct SolidDescription {
+    Triple color;
+};
+
+struct CheckerDescription {
+    Triple first, second;
+    double size;
+};
+
+struct TexmapDescription {
+    int width, height;
+    std::vector<float> texels;  // height x width x 3
+    Quadruple p0, p1;
+};
+
+using PigmentDescription = std::variant<SolidDescription, CheckerDescription, TexmapDescription>;
+
+struct FinishDescription {
+    double ka, kd, ks, alpha, kr, kt;
+    double eta;  // n1/n2, outside over inside
+};
+
+struct SphereDescription {
+    Triple center;
+    double radius;
+};
+
+struct PolyhedronDescription {
+    std::vector<Quadruple> planes;  // a, b, c, d of a x + b y + c z + d <= 0
+};
+
+struct QuadricDescription {
+    // A to J of A x^2 + B y^2 + C z^2 + D x y + E x z + F y z + G x + H y + I z + J <= 0
+    std::array<double, 10> coefficients;
+};
+
+using ShapeDescription = std::variant<SphereDescription, PolyhedronDescription, QuadricDescription>;
+
+struct ObjectDescription {
+    int pigment, finish;
+    ShapeDescription shape;
+};
+
+struct SceneDescription {
+    CameraDescription camera;
+    Triple ambient{0, 0, 0};
+    Triple background{0, 0, 0};
+    std::vector<LightDescription> lights;
+    std::vector<PigmentDescription> pigments;
+    std::vector<FinishDescription> finishes;
+    std::vector<ObjectDescription> objects;
+};
+
+// ---- How to draw it -----------------------------------------------------------------------------------------------
+
+enum class Precision { single, normal, extended };  // float, double, long double
+
+// How the objects are searched: one by one, or by a tree over their boxes; by default whichever is faster.
+enum class Search { automatic, brute, bvh };
+
+struct RenderSettings {
+    int width, height;
+    int grid = 1;  // grid x grid rays a pixel
+    bool corner = true;
+    bool blinn = false;
+    double cutoff = 0;
+    int max_depth = 0;
+    Precision precision = Precision::normal;
+    Search search = Search::automatic;
+};
+
+// ---- What comes out besides the picture ---------------------------------------------------------------------------
+
+struct RayCounts {
+    std::uint64_t primary = 0, reflected = 0, transmitted = 0, shadow = 0;
+    std::uint64_t pixels_too_deep = 0;  // in which the depth limit dropped a ray that the cut-off would have kept
+    int deepest = 0;
+};
+
+}  // namespace whitted

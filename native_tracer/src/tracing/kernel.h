@@ -1,0 +1,61 @@
+// The tracer behind one interface, whatever the precision and the instruction set it was compiled for.
+
+#pragma once
+
+#include <atomic>
+#include <memory>
+#include <string_view>
+
+#include "search/search.h"
+#include "tracing/description.h"
+#include "tracing/ray_tree.h"
+
+namespace whitted {
+
+// A rectangle of pixels, up to but excluding `right` and `bottom`.
+struct Tile {
+    int left, top, right, bottom;
+};
+
+// Wide, so that registers full of neighbouring pixels fit in, and not too small, for its last rays leave lanes empty.
+inline constexpr int tile_width = 64, tile_height = 32;
+
+class Kernel {
+ public:
+    virtual ~Kernel();
+
+    // Draws a tile into `picture`, which holds the whole picture, height x width x 3. Returns false, with the tile
+    // untouched, if it was stopped. May be called from several threads at once.
+    virtual bool trace_tile(const Tile& tile, float* picture, RayCounts& counts,
+                            const std::atomic<bool>& stop) const = 0;
+
+    // Whether the objects are searched by a tree.
+    virtual bool uses_tree() const = 0;
+};
+
+// `instructions` is "baseline", "avx2" or "avx512"; empty: the best that this processor has. Throws
+// std::invalid_argument if it has not, or if the program was not compiled for it. Long double knows no other than
+// "baseline", and takes that whatever is named. The kernel refers to the description's textures and must not outlive
+// it.
+std::unique_ptr<Kernel> make_kernel(const SceneDescription& scene, const RenderSettings& settings,
+                                    std::string_view instructions = {});
+
+// Traces one pixel, with its rays put into `tree` and its colour, as trace_tile would leave it, into `color`.
+void record_pixel(const SceneDescription& scene, const RenderSettings& settings, int column, int row, float* color,
+                  RayTree& tree);
+
+// Each is kernel.cpp, compiled for one instruction set; the baseline has more, see baseline.cpp.
+namespace baseline {
+Kernel* make_kernel(const SceneDescription& scene, const RenderSettings& settings, const SearchPlan& plan);
+Kernel* make_extended_kernel(const SceneDescription& scene, const RenderSettings& settings, const SearchPlan& plan);
+void record_pixel(const SceneDescription& scene, const RenderSettings& settings, const SearchPlan& plan, int column,
+                  int row, float* color, RayTree& tree);
+}  // namespace baseline
+namespace avx2 {
+Kernel* make_kernel(const SceneDescription& scene, const RenderSettings& settings, const SearchPlan& plan);
+}
+namespace avx512 {
+Kernel* make_kernel(const SceneDescription& scene, const RenderSettings& settings, const SearchPlan& plan);
+}
+
+}  // namespace whitted

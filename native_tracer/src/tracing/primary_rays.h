@@ -1,0 +1,84 @@
+// The rays that leave the eye.
+
+#pragma once
+
+#include "shapes/contact.h"
+#include "tracing/camera.h"
+#include "tracing/description.h"
+#include "tracing/kernel.h"
+#include "tracing/ray.h"
+#include "tracing/vector.h"
+
+namespace whitted::WHITTED_ISA {
+
+// The rays of a rectangle of pixels: row by row, in each a grid of grid x grid rays a pixel, one place of it after the
+// other.
+template <typename Real>
+class PrimaryRays {
+ public:
+    PrimaryRays(const Camera<Real>& camera, const EyeContact<Real>& contact, const RenderSettings& settings,
+                const Tile& tile)
+        : camera_(camera),
+          contact_(contact),
+          tile_(tile),
+          grid_(settings.grid),
+          shift_(settings.corner ? Real(0.5) : Real(0)),
+          reach_(max_norm(Vector<Lanes<Real>>(camera.eye()))),
+          column_(tile.left),
+          row_(tile.top) {}
+
+    bool done() const { return row_ == tile_.bottom; }
+    bool begins_row() const { return column_ == tile_.left && sample_ == 0; }
+
+    // The next rays of the row, as many as there are lanes and pixels left.
+    Group<Real> next() {
+        using L = Lanes<Real>;
+        const L columns = L(static_cast<Real>(column_)) + L::numbers();
+        const L rows = static_cast<Real>(row_);
+        Group<Real> group;
+        group.rays.origin = Vector<L>(camera_.eye());
+        group.rays.direction =
+            camera_.directions(columns + L(offset(sample_ % grid_)), rows + L(offset(sample_ / grid_)));
+        group.rays.t_min = camera_.eye_error();
+        group.rays.object = contact_.object;
+        group.rays.primitive = contact_.primitive;
+        group.rays.inside = contact_.leads_inside(group.rays.direction, camera_.eye_error(), camera_.spread());
+        group.rays.spread = camera_.spread();
+        group.rays.reach = reach_;
+        group.weight = Real(1);
+        group.depth = 0;
+        group.pixel = Indices<Real>((row_ - tile_.top) * (tile_.right - tile_.left) + column_ - tile_.left) +
+                      Indices<Real>::numbers();
+        group.record = -1;
+        group.active = Mask<Real>::first(tile_.right - column_);
+        advance();
+        return group;
+    }
+
+ private:
+    void advance() {
+        column_ += lane_count<Real>;
+        if (column_ < tile_.right) {
+            return;
+        }
+        column_ = tile_.left;
+        if (++sample_ == grid_ * grid_) {
+            sample_ = 0;
+            ++row_;
+        }
+    }
+
+    // Of a place in the grid from its pixel's top-left corner, across or down.
+    Real offset(int place) const { return (static_cast<Real>(place) + Real(0.5)) / static_cast<Real>(grid_) - shift_; }
+
+    const Camera<Real>& camera_;
+    const EyeContact<Real>& contact_;
+    const Tile tile_;
+    const int grid_;
+    const Real shift_;
+    const Lanes<Real> reach_;  // of the eye
+    int column_, row_;
+    int sample_ = 0;  // a place in the grid
+};
+
+}  // namespace whitted::WHITTED_ISA

@@ -1,0 +1,382 @@
+// A scene, prepared for one precision, and the two questions rays ask of it: what is hit first, and whether anything
+// is in the way.
+
+#pragma once
+
+#include <algorithm>
+#include <cmath>
+#include <cstddef>
+#include <vector>
+
+#include "search/search.h"
+#include "shapes/contact.h"
+#include "shapes/crossing.h"
+#include "shapes/shapes.h"
+#include "tracing/camera.h"
+#include "tracing/description.h"
+#include "tracing/pigment.h"
+#include "tracing/rounding.h"
+#include "tracing/tree.h"
+
+namespace whitted::WHITTED_ISA {
+
+template <typename Real>
+struct Light {
+    using L = Lanes<Real>;
+    Vector<Real> position;
+    Color<Real> color;
+    Real a, b, c;  // dimmed by 1 / (a + b d + c d^2) at distance d
+    View<Real> view;
+    std::vector<Contact<Real>> contacts;
+
+    // Whether rays that lead to the light cross an object at the surface that the light lies on.
+    Mask<Real> lies_at(const Crossing<Real>& crossing, const Vector<L>& direction) const {
+        Mask<Real> result = Mask<Real>::none();
+        for (const Contact<Real>& contact : contacts) {
+            result |= contact.is_at(crossing, direction);
+        }
+        return result;
+    }
+
+    // Whether the light lies in the plane of these primitives, and so shines along them.
+    Mask<Real> grazes(Indices<Real> primitive) const {
+        Mask<Real> result = Mask<Real>::none();
+        for (const Contact<Real>& contact : contacts) {
+            if (contact.flat) {
+                result |= primitive == Indices<Real>(contact.primitive);
+            }
+        }
+        return result;
+    }
+};
+
+template <typename Real>
+struct Finish {
+    Real ka, kd, ks, alpha, kr, kt;
+    Real eta;  // n1/n2, outside over inside
+};
+
+template <typename Real>
+struct Object {
+    Finish<Real> finish;
+    const Pigment<Real>* pigment;
+    int first_primitive;
+    ShapeIndex shape;
+};
+
+template <typename Real>
+struct Hits {
+    Lanes<Real> t = std::numeric_limits<Real>::infinity();
+    Indices<Real> object = -1;  // -1: nothing is hit
+    Indices<Real> primitive = -1;
+    Mask<Real> inside = Mask<Real>::none();
+};
+
+// The surface that rays have hit.
+template <typename Real>
+struct Surface {
+    using L = Lanes<Real>;
+    Mask<Real> hit;
+    Vector<L> point, outward, normal;  // `normal` is turned toward the viewer
+    L error;                           // a bound of `point`'s rounding error, for t_min
+    L lean;                            // how far the normal may be off
+    Color<L> pigment;
+    L ka, kd, ks, alpha, kr, kt, eta;
+};
+
+// Puts the lanes of `other` that the mask names into `surface`.
+template <typename Real>
+void merge(Mask<Real> mask, const Surface<Real>& other, Surface<Real>& surface) {
+    const auto put = [&](auto member) { surface.*member = select(mask, other.*member, surface.*member); };
+    using S = Surface<Real>;
+    put(&S::point);
+    put(&S::outward);
+    put(&S::normal);
+    put(&S::error);
+    put(&S::pigment);
+    for (const auto member : {&S::lean, &S::ka, &S::kd, &S::ks, &S::alpha, &S::kr, &S::kt, &S::eta}) {
+        put(member);
+    }
+}
+
+template <typename Real>
+struct Scene {
+    Color<Real> ambient, background;
+    View<Real> eye_view;
+    EyeContact<Real> eye_contact;
+    std::vector<Light<Real>> lights;
+    std::vector<Pigment<Real>> pigments;
+    std::vector<Object<Real>> objects;
+    // Those outside the tree come first, the rest in the order of its leaves.
+    Shapes<Real> shapes;
+    typename Shapes<Real>::Ranges apart;
+    Tree<Real> tree;
+
+    Scene(const SceneDescription& description, const SearchPlan& plan);
+    Scene(const Scene&) = delete;  // objects point to pigments
+
+    // The nearest hit of each ray; of objects at the same distance, the first of the file; for the rays in `wanted`,
+    // which start where `view` was made from, if it is given.
+    Hits<Real> nearest_hit(const Rays<Real>& rays, Mask<Real> wanted, const View<Real>* view) const {
+        Hits<Real> hits;
+        Lanes<Real> limit = select(wanted, hits.t, Lanes<Real>(Real(-1)));
+        Lanes<Real> second = hits.t;
+        Mask<Real> close = Mask<Real>::none();
+        const auto may_hit = [&](const auto& sight) { return sight.may_be_hit(rays.direction); };
+        for_each_crossing<Ties::found>(
+            rays, limit, close, view, may_hit, [&](const auto& shape, const Crossing<Real>& crossing) {
+                const Indices<Real> object = shape.object();
+                const Mask<Real> nearer = (crossing.t < hits.t) | ((crossing.t <= hits.t) & (object < hits.object));
+                second = min(second, max(crossing.t, hits.t));
+                hits.t = select(nearer, crossing.t, hits.t);
+                hits.object = select(nearer, object, hits.object);
+                hits.primitive = select(nearer, crossing.primitive, hits.primitive);
+                hits.inside = select(nearer, crossing.inside, hits.inside);
+                limit = min(hits.t, limit);
+                return true;
+            });
+        const Lanes<Real> range = Lanes<Real>(most_blur<Real>) * (hits.t + rays.reach);
+        close |= (second - hits.t <= range) | (hits.t < range);
+        close &= wanted;
+        if (decides_ties<Real> && any(close)) [[unlikely]] {
+            const Hits<Real> settled = nearest_hit_by_rules(rays, close);
+            hits.t = select(close, settled.t, hits.t);
+            hits.object = select(close, settled.object, hits.object);
+            hits.primitive = select(close, settled.primitive, hits.primitive);
+            hits.inside = select(close, settled.inside, hits.inside);
+        }
+        return hits;
+    }
+
+    // An object that is in the way of each ray before `distance`, or -1: nothing is; for the rays in `wanted`.
+    Indices<Real> blocker(const Rays<Real>& rays, const Light<Real>& light, Lanes<Real> distance,
+                          Mask<Real> wanted) const {
+        Mask<Real> close = Mask<Real>::none();
+        Indices<Real> blocker = find_blocker<Ties::found_in_the_way>(rays, light, distance, wanted, close, &light.view);
+        close &= wanted;
+        if (decides_ties<Real> && any(close)) [[unlikely]] {
+            blocker = select(close, blocker_by_rules(rays, light, distance, close), blocker);
+        }
+        return blocker;
+    }
+
+ private:
+    // What becomes of rays that meet two things at once, but for rounding errors.
+    enum class Ties { found, found_in_the_way, decided };
+
+    // The first object of the file among those that tie with the nearest: the order in which they are visited does not
+    // matter, also where one ties with two that do not tie with one another.
+    [[gnu::noinline]] Hits<Real> nearest_hit_by_rules(const Rays<Real>& rays, Mask<Real> wanted) const {
+        const Lanes<Real> nowhere = Real(-1);
+        const Lanes<Real> infinity = std::numeric_limits<Real>::infinity();
+        Mask<Real> close = wanted;
+        const auto anything = [](const auto&) { return true; };
+        Lanes<Real> nearest = infinity;
+        Lanes<Real> error = Real(0);
+        Lanes<Real> limit = select(wanted, infinity, nowhere);
+        for_each_crossing<Ties::decided>(rays, limit, close, nullptr, anything,
+                                         [&](const auto& shape, const Crossing<Real>& crossing) {
+                                             const Lanes<Real> its_error = distance_errors(shape, rays, crossing);
+                                             const Mask<Real> same = (crossing.t <= nearest) & (its_error > error);
+                                             error = select((crossing.t < nearest) | same, its_error, error);
+                                             nearest = min(crossing.t, nearest);
+                                             limit = min(nearest, limit);
+                                             return true;
+                                         });
+        Hits<Real> hits;
+        limit = select(wanted, nearest + Lanes<Real>(most_blur<Real>) * (nearest + rays.reach), nowhere);
+        for_each_crossing<Ties::decided>(
+            rays, limit, close, nullptr, anything, [&](const auto& shape, const Crossing<Real>& crossing) {
+                const Indices<Real> object = shape.object();
+                const Mask<Real> ties =
+                    (crossing.t < infinity) & (crossing.t - nearest <= error + distance_errors(shape, rays, crossing));
+                const Mask<Real> first = ties & ((hits.object < Indices<Real>(0)) | (object < hits.object));
+                hits.t = select(first, crossing.t, hits.t);
+                hits.object = select(first, object, hits.object);
+                hits.primitive = select(first, crossing.primitive, hits.primitive);
+                hits.inside = select(first, crossing.inside, hits.inside);
+                return true;
+            });
+        hits.primitive = Indices<Real>::gather([&](int lane) {
+            if (!wanted[lane] || hits.object[lane] < 0) {
+                return hits.primitive[lane];
+            }
+            const Object<Real>& object = objects[static_cast<std::size_t>(hits.object[lane])];
+            return shapes.visit(object.shape, [&](const auto& shape) {
+                return shape.primitive_met(rays, lane, hits.primitive[lane], hits.t[lane], hits.inside[lane]);
+            });
+        });
+        return hits;
+    }
+
+    [[gnu::noinline]] Indices<Real> blocker_by_rules(const Rays<Real>& rays, const Light<Real>& light,
+                                                     Lanes<Real> distance, Mask<Real> wanted) const {
+        Mask<Real> close = wanted;
+        return find_blocker<Ties::decided>(rays, light, distance, wanted, close, nullptr);
+    }
+
+    template <Ties ties>
+    [[gnu::always_inline]] Indices<Real> find_blocker(const Rays<Real>& rays, const Light<Real>& light,
+                                                      Lanes<Real> distance, Mask<Real> wanted, Mask<Real>& close,
+                                                      const View<Real>* view) const {
+        Indices<Real> blocker = -1;
+        Mask<Real> open = wanted;
+        // Crossings beyond it do not matter.
+        const Lanes<Real> nowhere = Real(-1);
+        Lanes<Real> limit = select(open, distance, nowhere);
+        const auto may_block = [&](const auto& sight) { return sight.may_block(rays, distance, open); };
+        const Lanes<Real> range = Lanes<Real>(most_blur<Real>) * rays.reach;
+        for_each_crossing<ties>(
+            rays, limit, close, view, may_block, [&](const auto& shape, const Crossing<Real>& crossing) {
+                const Mask<Real> blocked = open & (crossing.t < distance) & ~light.lies_at(crossing, rays.direction);
+                blocker = select(blocked, Indices<Real>(shape.object()), blocker);
+                if (any(blocked & (crossing.t < range))) [[unlikely]] {
+                    close |= blocked & (crossing.t < range);
+                }
+                open &= ~blocked;
+                limit = select(open, limit, nowhere);
+                return any(open);
+            });
+        return blocker;
+    }
+
+    // How far the distances of crossings may be off.
+    template <typename Shape>
+    static Lanes<Real> distance_errors(const Shape& shape, const Rays<Real>& rays, const Crossing<Real>& crossing) {
+        return Lanes<Real>::gather([&](int lane) {
+            const Real t = crossing.t[lane];
+            if (!std::isfinite(t)) {
+                return Real(0);
+            }
+            // No number where the point is rounded to a sphere's centre.
+            const Real error = distance_error(shape, rays, lane, crossing.primitive[lane], t);
+            const Real most = most_blur<Real> * (t + rays.reach[lane]);
+            return error <= most ? error : most;
+        });
+    }
+
+    // Calls visit(shape, crossing) for the shapes that some ray crosses before `limit`, and maybe others, until it
+    // returns false: the one place that knows how the shapes are searched. visit may lower `limit`. Shapes outside the
+    // tree are passed over where may_hit(sight) is false, if there is a view. Ties between a shape's primitives are
+    // decided, or the rays that have some are added to `close`.
+    template <Ties ties, typename MayHit, typename Visit>
+    [[gnu::always_inline]] void for_each_crossing(const Rays<Real>& rays, const Lanes<Real>& limit, Mask<Real>& close,
+                                                  const View<Real>* view, MayHit may_hit, Visit visit) const {
+        const auto cross = [&](const auto& shape) __attribute__((always_inline)) {
+            Crossing<Real> crossing;  // of its own, so that it stays in registers but for calls that need it elsewhere
+            bool crosses;
+            if constexpr (ties == Ties::decided) {
+                crosses = shape.intersect_by_rules(rays, crossing);
+            } else {
+                crosses = shape.template intersect<ties == Ties::found>(rays, crossing, close);
+            }
+            return !crosses || visit(shape, crossing);
+        };
+        const auto cross_if_in_sight = [&](const auto& shape, const auto& sight)
+                                           __attribute__((always_inline)) { return !may_hit(sight) || cross(shape); };
+        if (view ? shapes.for_each(apart, *view, cross_if_in_sight) : shapes.for_each(apart, cross)) {
+            tree.for_each_leaf(rays, limit, [&](const TreeNode<Real>& leaf) __attribute__((always_inline)) {
+                return shapes.for_each(leaf.shapes, cross);
+            });
+        }
+    }
+
+    void add_objects(const SceneDescription& description);
+    void add_shapes(const SceneDescription& description, const SearchPlan& plan);
+    void add_eye(const SceneDescription& description);
+    void add_light(const SceneDescription& description, const LightDescription& light);
+    std::vector<Contact<Real>> contacts_of(const SceneDescription& description, const Triple& point) const;
+};
+
+// ---- Preparation --------------------------------------------------------------------------------------------------
+
+template <typename Real>
+Scene<Real>::Scene(const SceneDescription& description, const SearchPlan& plan)
+    : ambient(vector_of<Real>(description.ambient)), background(vector_of<Real>(description.background)), tree(plan) {
+    for (const PigmentDescription& pigment : description.pigments) {
+        pigments.push_back(pigment_of<Real>(pigment));
+    }
+    add_objects(description);
+    add_shapes(description, plan);
+    add_eye(description);
+    for (const LightDescription& light : description.lights) {
+        add_light(description, light);
+    }
+}
+
+template <typename Real>
+void Scene<Real>::add_objects(const SceneDescription& description) {
+    const auto real = [](double value) { return static_cast<Real>(value); };
+    objects.reserve(description.objects.size());
+    int primitive = 0;
+    for (const ObjectDescription& object : description.objects) {
+        const FinishDescription& f = description.finishes[static_cast<std::size_t>(object.finish)];
+        objects.push_back({{real(f.ka), real(f.kd), real(f.ks), real(f.alpha), real(f.kr), real(f.kt), real(f.eta)},
+                           &pigments[static_cast<std::size_t>(object.pigment)],
+                           primitive,
+                           {}});
+        primitive += Shapes<Real>::primitive_count(object.shape);
+    }
+}
+
+// Primitives are numbered in the order of the file, shapes are kept in that of the search.
+template <typename Real>
+void Scene<Real>::add_shapes(const SceneDescription& description, const SearchPlan& plan) {
+    const auto add = [&](int number) {
+        const auto index = static_cast<std::size_t>(number);
+        Object<Real>& object = objects[index];
+        object.shape = shapes.add(description.objects[index].shape, number, object.first_primitive);
+    };
+    for (const int object : plan.apart) {
+        add(object);
+    }
+    apart = shapes.added_behind({});
+    typename Shapes<Real>::Ranges last = apart;
+    for (std::size_t i = 0; i < plan.tree.nodes.size(); ++i) {
+        const BvhNode& node = plan.tree.nodes[i];
+        if (node.children == 0) {
+            for (std::size_t k = node.first; k < node.first + node.count; ++k) {
+                add(static_cast<int>(plan.tree.order[k]));
+            }
+            last = tree[i].shapes = shapes.added_behind(last);
+        }
+    }
+}
+
+template <typename Real>
+void Scene<Real>::add_eye(const SceneDescription& description) {
+    const Triple& eye = description.camera.eye;
+    eye_view = shapes.view_from(apart, vector_of<Real>(eye));
+    for (const Contact<Real>& contact : contacts_of(description, eye)) {
+        if (eye_contact.object < 0 && contact.on_body) {
+            eye_contact.object = contact.object;
+            eye_contact.primitive = contact.primitive;
+            eye_contact.curvature = contact.curvature;
+        }
+        if (contact.object == eye_contact.object) {
+            eye_contact.outward.push_back(contact.outward);
+        }
+    }
+}
+
+template <typename Real>
+void Scene<Real>::add_light(const SceneDescription& description, const LightDescription& light) {
+    const Vector<Real> position = vector_of<Real>(light.position);
+    const Color<Real> fading = vector_of<Real>(light.attenuation);
+    lights.push_back({position, vector_of<Real>(light.color), fading.x, fading.y, fading.z,
+                      shapes.view_from(apart, position), contacts_of(description, light.position)});
+}
+
+template <typename Real>
+std::vector<Contact<Real>> Scene<Real>::contacts_of(const SceneDescription& description, const Triple& point) const {
+    std::vector<Contact<Real>> contacts;
+    for (std::size_t i = 0; i < objects.size(); ++i) {
+        shapes.visit(objects[i].shape, description.objects[i].shape, [&](const auto& shape, const auto& described) {
+            shape.for_each_contact(described, point,
+                                   [&](const Contact<Real>& contact) { contacts.push_back(contact); });
+        });
+    }
+    return contacts;
+}
+
+}  // namespace whitted::WHITTED_ISA

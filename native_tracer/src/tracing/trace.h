@@ -1,0 +1,365 @@
+// Whitted's recursive shading, with the recursion turned into a stack of pending rays.
+//
+//     colour = ka ambient C
+//            + sum over lights in sight with n.l > 0 of  light / (a + b d + c d^2) (kd C (n.l) + ks highlight^alpha)
+//            + kr colour(reflected ray) + kt colour(transmitted ray)
+//
+// A pixel is a sum over its tree of rays: each adds its local colour, times its weight, the product of the kr and kt on
+// the way to it. So a ray needs nothing from its successors, and may be traced whenever it suits: rays wait on a stack
+// and are taken from it in batches, whatever pixel they belong to, so that all lanes of a register are busy. The stack
+// stays short however large the trees are, for the deepest rays lie on top.
+//
+// Whitted, "An Improved Illumination Model for Shaded Display", Communications of the ACM 23(6), 1980.
+
+#pragma once
+
+#include <algorithm>
+#include <atomic>
+#include <bit>
+#include <cmath>
+#include <cstdint>
+#include <limits>
+#include <type_traits>
+#include <vector>
+
+#include "tracing/description.h"
+#include "tracing/observer.h"
+#include "tracing/ray.h"
+#include "tracing/scene.h"
+#include "tracing/vector.h"
+
+namespace whitted::WHITTED_ISA {
+
+template <typename Real, typename Observer>
+class Tracer {
+ public:
+    using L = Lanes<Real>;
+    // The rays of a pixel are summed in double at least.
+    using Sum = std::conditional_t<std::is_same_v<Real, long double>, long double, double>;
+
+    Tracer(const Scene<Real>& scene, const RenderSettings& settings, Observer& observer)
+        : scene_(scene),
+          observer_(observer),
+          cutoff_(static_cast<Real>(settings.cutoff)),
+          max_depth_(settings.max_depth),
+          blinn_(settings.blinn) {}
+
+    // Traces `primary_rays` with all that follow from them, and adds their colours to sums[pixel]. Returns false if it
+    // was stopped before the end.
+    template <typename PrimaryRays>
+    bool trace(PrimaryRays primary_rays, Color<Sum>* sums, RayCounts& counts, const std::atomic<bool>& stop);
+
+ private:
+    // The batch, not the number of lanes, decides which rays are traced next, so that the rays of a pixel are summed in
+    // the same order on every processor.
+    static constexpr std::size_t batch_size = 64;
+
+    struct PixelState {
+        bool too_deep = false;
+    };
+
+    // Where successors lead, how far their directions may be off, and whether they travel inside.
+    struct Turn {
+        Vector<L> direction;
+        L spread;
+        Mask<Real> inside;
+    };
+
+    void trace_group(const Group<Real>& group, const View<Real>* view = nullptr);
+    Surface<Real> surface_at(const Rays<Real>& rays, const Hits<Real>& hits) const;
+    Color<L> local_color(const Group<Real>& group, const Hits<Real>& hits, const Surface<Real>& surface);
+    L highlight(const Rays<Real>& rays, const Hits<Real>& hits, const Surface<Real>& surface, const Vector<L>& to_light,
+                L cosine, Mask<Real> wanted) const;
+    void follow(const Group<Real>& group, const Hits<Real>& hits, const Surface<Real>& surface);
+    Turn mirror(const Rays<Real>& rays, const Hits<Real>& hits, const Surface<Real>& surface, L cosine) const;
+    Turn refract(const Rays<Real>& rays, const Hits<Real>& hits, const Surface<Real>& surface, L cosine,
+                 const Turn& mirrored, Mask<Real>& total) const;
+    Mask<Real> worthwhile(const Group<Real>& group, RayKind kind, Mask<Real> hit, L weight);
+
+    const Scene<Real>& scene_;
+    Observer& observer_;
+    const Real cutoff_;
+    const int max_depth_;
+    const bool blinn_;
+
+    // Successors of the rays that are traced, and those that are traced. Kinds wait apart: in which order rays are
+    // traced must not depend on the number of lanes.
+    RayStack<Real> reflected_, transmitted_, batch_;
+    Color<Sum>* sums_ = nullptr;
+    RayCounts* counts_ = nullptr;
+    std::vector<PixelState> pixels_;  // up to the last one of which the depth limit dropped a ray
+};
+
+template <typename Real, typename Observer>
+template <typename PrimaryRays>
+bool Tracer<Real, Observer>::trace(PrimaryRays primary_rays, Color<Sum>* sums, RayCounts& counts,
+                                   const std::atomic<bool>& stop) {
+    sums_ = sums;
+    counts_ = &counts;
+    reflected_.clear();
+    transmitted_.clear();
+    pixels_.clear();
+    while (!stop.load(std::memory_order_relaxed)) {
+        if (reflected_.size() + transmitted_.size() < batch_size && !primary_rays.done()) {
+            // Whole rows of pixels, for where a row is cut depends on the number of lanes.
+            std::size_t traced = 0;
+            do {
+                Group<Real> group = primary_rays.next();
+                observer_.primary(group);
+                trace_group(group, &scene_.eye_view);
+                traced += static_cast<std::size_t>(count(group.active));
+            } while (!primary_rays.done() && (traced < batch_size || !primary_rays.begins_row()));
+            counts.primary += traced;
+        } else if (reflected_.size() + transmitted_.size() > 0) {
+            batch_.clear();
+            reflected_.move_last(batch_size, batch_);
+            transmitted_.move_last(batch_size - batch_.size(), batch_);
+            for (std::size_t first = 0; first < batch_.size(); first += lane_count<Real>) {
+                trace_group(batch_.group(first));
+            }
+        } else {
+            counts.pixels_too_deep += static_cast<std::uint64_t>(
+                std::count_if(pixels_.begin(), pixels_.end(), [](const PixelState& pixel) { return pixel.too_deep; }));
+            return true;
+        }
+    }
+    return false;
+}
+
+// Traces a ray in each lane, and leaves those that follow from them on the stack.
+template <typename Real, typename Observer>
+void Tracer<Real, Observer>::trace_group(const Group<Real>& group, const View<Real>* view) {
+    const Hits<Real> hits = scene_.nearest_hit(group.rays, group.active, view);
+    Color<L> color(scene_.background);
+    if (any(group.active & (hits.object >= 0))) {
+        const Surface<Real> surface = surface_at(group.rays, hits);
+        observer_.surface(group, scene_, hits, surface);
+        color = select(surface.hit, local_color(group, hits, surface), color);
+        follow(group, hits, surface);
+    }
+    observer_.color(group, color);
+    const Color<L> weighted = group.weight * color;
+    for (unsigned lanes = group.active.bits(); lanes != 0; lanes &= lanes - 1) {
+        const int lane = std::countr_zero(lanes);
+        sums_[group.pixel[lane]] += Color<Sum>(lane_of(weighted, lane));
+    }
+}
+
+template <typename Real, typename Observer>
+Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const Hits<Real>& hits) const {
+    const Vector<L> p = rays.origin + hits.t * rays.direction;
+    const Mask<Real> hit = hits.object >= 0;
+
+    // Neighbouring rays mostly hit the same primitive: then there is nothing to select.
+    Surface<Real> result, another;
+    bool first = true;
+    for_each_distinct(hits.primitive, hit, [&](int primitive, int lane, Mask<Real> same) {
+        const Object<Real>& object = scene_.objects[static_cast<std::size_t>(hits.object[lane])];
+        Surface<Real>& surface = first ? result : another;
+        surface.hit = hit;
+
+        const auto moved = scene_.shapes.visit(object.shape, [&](const auto& shape) __attribute__((always_inline)) {
+            return shape.surface_at(primitive, p, rays, hits.inside);
+        });
+        surface.point = moved.point;
+        surface.outward = moved.outward;
+        surface.normal = select(hits.inside, -surface.outward, surface.outward);
+        const L reach = max_norm(surface.point);
+        const L off = decides_ties<Real> ? rays.t_min + moved.error + hits.t * rays.spread : L(Real(0));
+        const L blur = L(most_blur<Real>) * (reach + hits.t);
+        // A ray that is off meets the surface farther off the more it slants.
+        const L along = min(off / abs(dot(surface.outward, rays.direction)), blur);
+        surface.error = rounding_error(reach, hits.t) + along;
+        surface.lean = moved.curvature * surface.error;
+        surface.pigment = color_at(*object.pigment, {surface.point, surface.outward, rays.direction, off, blur});
+        const Finish<Real>& finish = object.finish;
+        surface.ka = finish.ka;
+        surface.kd = finish.kd;
+        surface.ks = finish.ks;
+        surface.alpha = finish.alpha;
+        surface.kr = finish.kr;
+        surface.kt = finish.kt;
+        surface.eta = finish.eta;
+
+        if (!first) {
+            merge(same, another, result);
+        }
+        first = false;
+    });
+    return result;
+}
+
+// ---- Local colour -------------------------------------------------------------------------------------------------
+
+template <typename Real, typename Observer>
+auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Real>& hits, const Surface<Real>& surface)
+    -> Color<L> {
+    const L zero = Real(0);
+    const L one = Real(1);
+    Color<L> color = surface.ka * Color<L>(scene_.ambient) * surface.pigment;
+    const Mask<Real> answers = group.active & surface.hit & ((surface.kd > zero) | (surface.ks > zero));
+    if (!any(answers)) {
+        return color;
+    }
+    // Shadow rays start on the viewer's side of the surface, as the reflected ray does.
+    const L reach = max_norm(surface.point);
+    Rays<Real> shadow_rays{surface.point,  surface.normal, surface.error,         hits.object,
+                           hits.primitive, hits.inside,    L(least_spread<Real>), reach};
+    const L point_error = L(8 * tie_epsilon<Real>) * reach;
+    for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
+        const Light<Real>& light = scene_.lights[i];
+        const Vector<L> path = Vector<L>(light.position) - surface.point;
+        const L distance = length(path);
+        const L nearness = one / distance;
+        const Vector<L> to_light = path * nearness;
+        const L cosine = dot(surface.normal, to_light);
+        // A surface is not lit along itself, nor by a light at the very point.
+        const Mask<Real> faces =
+            answers & (cosine > L(least_spread<Real>)) & (distance > point_error) & ~light.grazes(hits.primitive);
+
+        Indices<Real> blocker = -1;
+        if (any(faces)) {
+            counts_->shadow += static_cast<std::uint64_t>(count(faces));
+            shadow_rays.direction = to_light;
+            // It leads to the light from wherever the point really is.
+            shadow_rays.spread = min(L(least_spread<Real>) + surface.error * nearness, L(most_blur<Real>));
+            blocker = scene_.blocker(shadow_rays, light, distance, faces);
+        }
+        const Mask<Real> lit = faces & (blocker < 0);
+        if (!Observer::observes && !any(lit)) {
+            continue;
+        }
+        const L attenuation = L(light.a) + L(light.b) * distance + L(light.c) * distance * distance;
+        const Color<L> intensity = Color<L>(light.color) * (one / attenuation);
+        const Color<L> diffuse = surface.kd * cosine * surface.pigment * intensity;
+        color = select(lit, color + diffuse, color);
+        const Mask<Real> shines = lit & (surface.ks > zero);
+        Color<L> specular{zero, zero, zero};
+        if (any(shines)) {
+            specular = surface.ks * highlight(group.rays, hits, surface, to_light, cosine, shines) * intensity;
+            color = select(shines, color + specular, color);
+        }
+        observer_.light(group, i, surface, lit, blocker, cosine, attenuation, diffuse, specular);
+    }
+    return color;
+}
+
+// Phong's max(0, r.v)^alpha or Blinn's max(0, n.h)^alpha, for the rays in `wanted`.
+template <typename Real, typename Observer>
+auto Tracer<Real, Observer>::highlight(const Rays<Real>& rays, const Hits<Real>& hits, const Surface<Real>& surface,
+                                       const Vector<L>& to_light, L cosine, Mask<Real> wanted) const -> L {
+    const Vector<L> to_viewer = -rays.direction;
+    const L base = blinn_ ? dot(surface.normal, normalize(to_light + to_viewer))
+                          : dot(L(2) * cosine * surface.normal - to_light, to_viewer);
+    L result = Real(0);
+    for_each_distinct(hits.primitive, wanted, [&](int, int lane, Mask<Real> same) {
+        // A cosine that is rounded above 1 has powers without bounds.
+        result = select(same, power(min(max(base, L(Real(0))), L(Real(1))), surface.alpha[lane]), result);
+    });
+    return result;
+}
+
+// ---- Successors ---------------------------------------------------------------------------------------------------
+
+template <typename Real, typename Observer>
+void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& hits, const Surface<Real>& surface) {
+    const Mask<Real> hit = group.active & surface.hit;
+    const L reflected_weight = group.weight * surface.kr;
+    const L transmitted_weight = group.weight * surface.kt;
+    const Mask<Real> reflects = worthwhile(group, RayKind::reflected, hit, reflected_weight);
+    const Mask<Real> transmits = worthwhile(group, RayKind::transmitted, hit, transmitted_weight);
+    if (!any(reflects | transmits)) {
+        return;
+    }
+    // Both kinds start where the ray has hit, and differ in the rest.
+    Group<Real> successors;
+    successors.rays.origin = surface.point;
+    successors.rays.t_min = surface.error;
+    successors.rays.object = hits.object;
+    successors.rays.primitive = hits.primitive;
+    successors.depth = group.depth + Indices<Real>(1);
+    successors.pixel = group.pixel;
+    successors.record = group.record;
+    const auto push = [&](RayKind kind, const Turn& turn, L weight, Mask<Real> followed, RayStack<Real>& stack,
+                          std::uint64_t& counter) {
+        successors.rays.direction = turn.direction;
+        successors.rays.spread = turn.spread;
+        successors.rays.inside = turn.inside;
+        successors.weight = weight;
+        successors.active = followed;
+        observer_.spawned(kind, group, successors);
+        stack.push(successors, followed);
+        counter += static_cast<std::uint64_t>(count(followed));
+    };
+    const L cosine = -dot(group.rays.direction, surface.normal);
+    const Turn mirrored = mirror(group.rays, hits, surface, cosine);
+    if (any(reflects)) {
+        push(RayKind::reflected, mirrored, reflected_weight, reflects, reflected_, counts_->reflected);
+    }
+    if (any(transmits)) {
+        Mask<Real> total;
+        const Turn refracted = refract(group.rays, hits, surface, cosine, mirrored, total);
+        observer_.total_reflection(group, transmits & total);
+        push(RayKind::transmitted, refracted, transmitted_weight, transmits, transmitted_, counts_->transmitted);
+    }
+    for_each_distinct(successors.depth, reflects | transmits,
+                      [&](int depth, int, Mask<Real>) { counts_->deepest = std::max(counts_->deepest, depth); });
+}
+
+template <typename Real, typename Observer>
+auto Tracer<Real, Observer>::mirror(const Rays<Real>& rays, const Hits<Real>& hits, const Surface<Real>& surface,
+                                    L cosine) const -> Turn {
+    return {normalize(rays.direction + L(2) * cosine * surface.normal),
+            min(rays.spread + L(2) * surface.lean + L(least_spread<Real>), L(most_blur<Real>)), hits.inside};
+}
+
+// Snell's law, with the ratio of the index on the ray's side to the index on the other: n1/n2 on the way in, n2/n1 on
+// the way out. Where it has no answer, which `total` tells, the ray follows the mirror direction.
+template <typename Real, typename Observer>
+auto Tracer<Real, Observer>::refract(const Rays<Real>& rays, const Hits<Real>& hits, const Surface<Real>& surface,
+                                     L cosine, const Turn& mirrored, Mask<Real>& total) const -> Turn {
+    const L zero = Real(0);
+    const L one = Real(1);
+    const L eta = select(hits.inside, one / surface.eta, surface.eta);
+    // 1 - eta^2 (1 - cosine^2), without the difference of nearly equal numbers where eta is nearly 1. Where it is 0 but
+    // for its error the ray is refracted along the surface.
+    const L exact_cosine2 = (one - eta) * (one + eta) + eta * cosine * (eta * cosine);
+    const L cosine_error = min(rays.spread + surface.lean, L(most_blur<Real>));
+    const L rounding = L(4 * tie_epsilon<Real>);
+    const L critical = eta * eta * (L(2) * cosine * cosine_error + rounding) + rounding;
+    const L cosine2 = select(abs(exact_cosine2) <= critical, zero, exact_cosine2);
+    const Vector<L> refracted = eta * rays.direction + (eta * cosine - sqrt(max(cosine2, zero))) * surface.normal;
+    const L length2 = dot(refracted, refracted);
+    // Of a ratio beyond all measure these may be no numbers, or 0.
+    total = ~((cosine2 >= zero) & (length2 > zero));
+    // In the plane of incidence it is more near the critical angle; across it, it is not.
+    const L steepest = L(2) * (one + eta);
+    const L spread = min(cosine_error * steepest + L(least_spread<Real>), L(most_blur<Real>));
+    return {select(total, mirrored.direction, refracted * (one / sqrt(length2))),
+            select(total, mirrored.spread, spread), select(total, hits.inside, ~hits.inside)};
+}
+
+// Which of the rays that would follow, with the given weights, are traced.
+template <typename Real, typename Observer>
+Mask<Real> Tracer<Real, Observer>::worthwhile(const Group<Real>& group, RayKind kind, Mask<Real> hit, L weight) {
+    const Mask<Real> wanted = hit & (weight > L(0));
+    if (!any(wanted)) {
+        return wanted;
+    }
+    const Mask<Real> weighty = weight >= L(cutoff_);
+    const Mask<Real> shallow = group.depth < Indices<Real>(max_depth_);
+    observer_.dropped(group, kind, wanted, weighty, shallow);
+    const Mask<Real> too_deep = wanted & weighty & ~shallow;
+    if (any(too_deep)) [[unlikely]] {
+        for (unsigned lanes = too_deep.bits(); lanes != 0; lanes &= lanes - 1) {
+            const auto pixel = static_cast<std::size_t>(group.pixel[std::countr_zero(lanes)]);
+            if (pixel >= pixels_.size()) {
+                pixels_.resize(pixel + 1);
+            }
+            pixels_[pixel].too_deep = true;
+        }
+    }
+    return wanted & weighty & shallow;
+}
+
+}  // namespace whitted::WHITTED_ISA
