@@ -9,7 +9,7 @@ from converter.scene.errors import shown
 from converter.scene.fields import Lost
 from converter.scene.model import Csg, Operand, Plane, Polyhedron, Primitive, Quadric, Shape, Sphere, Vector
 from converter.scene.tokens import found, whole
-from converter.shapes.csg_places import box_of, box_planes, inside_point, region_of, values_around
+from converter.shapes.csg_places import box_of, inside_point, values_around
 from converter.shapes.csg_program import (
     DIFFERENCE,
     INTERSECTION,
@@ -21,6 +21,7 @@ from converter.shapes.csg_program import (
     with_leaves,
     written_leaves,
 )
+from converter.shapes.csg_regions import region_of
 from converter.shapes.kind import Distances, Facts, Horizon, Intersection
 from converter.shapes.primitives import PRIMITIVE_KINDS, primitive_kind
 
@@ -234,8 +235,7 @@ def reaches(shape: Csg, half_spaces: Sequence[Plane]) -> bool:
     program, region = program_of(shape), region_of(shape)
     if region is None:
         return False
-    around = [*region.planes, *box_planes(region.low, region.high)]
-    if around and not polyhedron_facts([[*around, *half_spaces]])[0].drawn:
+    if region.sides and not polyhedron_facts([[*region.sides, *half_spaces]])[0].drawn:
         return False
     leaves = [int(primitive_kind(leaf).reaches(leaf, half_spaces)) for leaf in program.leaves]
 

@@ -2,100 +2,18 @@
 
 import math
 from collections.abc import Iterator, Sequence
-from functools import lru_cache
 from itertools import islice, product
 from typing import NamedTuple
 
-from converter.scene.model import Csg, Plane, Polyhedron, Primitive, Quadric, Sphere, Vector
-from converter.shapes.csg_program import DIFFERENCE, UNION, Program, fold, program_of
-from converter.shapes.kind import Facts
+from converter.scene.model import Csg, Polyhedron, Primitive, Quadric, Sphere, Vector
+from converter.shapes.csg_program import Program, program_of
+from converter.shapes.csg_regions import Region, region_of
 from converter.shapes.primitives import primitive_kind
 
 MOST_SIDES = 10
 """Surfaces through one point of which all combinations of sides are gone through."""
 TRIES, ENOUGH = 64, 4
 """Points of a box of which some may be inside, and how many of these are compared."""
-_EVERYWHERE = (-math.inf,) * 3, (math.inf,) * 3
-
-
-class Region(NamedTuple):
-    """A convex set that holds something: the intersection of half-spaces and of a box, whose corners may be infinite.
-
-    Attributes:
-        planes: the half-spaces.
-        low, high: the corners.
-        exact: whether it is that something, and the box adds nothing.
-
-    """
-
-    planes: tuple[Plane, ...]
-    low: Vector
-    high: Vector
-    exact: bool
-
-    @property
-    def bounded(self) -> bool:
-        """Whether the box is finite."""
-        return all(map(math.isfinite, (*self.low, *self.high)))
-
-
-@lru_cache(maxsize=4096)
-def region_of(shape: Csg) -> Region | None:
-    """What a csg is in; None if it is known to be nothing."""
-    program = program_of(shape)
-    if not program.code:
-        return Region((), *_EVERYWHERE, True) if program.everything else None
-    return fold(program.code, lambda k: _leaf_region(program.leaves[k], program.facts[k]), _combined)
-
-
-def _leaf_region(leaf: Primitive, facts: Facts) -> Region | None:
-    box = (facts.low, facts.high) if facts.bounded else _EVERYWHERE
-    return Region(primitive_kind(leaf).planes(leaf), *box, isinstance(leaf, Polyhedron))
-
-
-def _combined(operation: int, a: Region | None, b: Region | None) -> Region | None:
-    if operation == UNION:
-        return _union(a, b) if a and b else a or b
-    if operation == DIFFERENCE:
-        if a and b and b.exact and len(b.planes) == 1:
-            x, y, z, w = (0.0 - number for number in b.planes[0])
-            return _intersection(a, Region(((x, y, z, w),), *_EVERYWHERE, True))
-        return a and a._replace(exact=a.exact and b is None)
-    return _intersection(a, b) if a and b else None
-
-
-def _union(a: Region, b: Region) -> Region:
-    low, high = tuple(map(min, a.low, b.low)), tuple(map(max, a.high, b.high))
-    return Region(tuple(plane for plane in a.planes if plane in b.planes), low, high, False)  # type: ignore[arg-type]
-
-
-def _intersection(a: Region, b: Region) -> Region | None:
-    """None where the half-spaces have no volume in common, or none in the box.
-
-    A box of balls and quadrics is rounded: what only touches it may be something.
-    """
-    from native_tracer.halfspaces import polyhedron_facts
-
-    planes = tuple(dict.fromkeys(a.planes + b.planes))
-    low, high = tuple(map(max, a.low, b.low)), tuple(map(min, a.high, b.high))
-    if any(x > y for x, y in zip(low, high, strict=True)):
-        return None
-    if planes:
-        alone, boxed = polyhedron_facts([planes, (*planes, *box_planes(low, high))])  # type: ignore[arg-type]
-        if not alone.solid or not boxed.drawn:
-            return None
-        if boxed.solid and boxed.bounded:
-            low, high = tuple(map(max, low, boxed.low)), tuple(map(min, high, boxed.high))
-    return Region(planes, low, high, a.exact and b.exact)  # type: ignore[arg-type]
-
-
-def box_planes(low: Vector, high: Vector) -> Iterator[Plane]:
-    """The sides of a box that are somewhere."""
-    for axis in range(3):
-        for corner, sign in ((low, -1.0), (high, 1.0)):
-            if math.isfinite(corner[axis]):
-                a, b, c = (sign * float(k == axis) for k in range(3))
-                yield (a, b, c, -sign * corner[axis])
 
 
 # ---- Points ----------------------------------------------------------------------------------------------------------

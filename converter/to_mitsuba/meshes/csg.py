@@ -187,7 +187,7 @@ def _unit_ball(tolerance: float) -> tuple[Floats, Integers]:
 
 def _polyhedron_solid(planes: Sequence[Sequence[float]], outer: Box, name: str) -> _Solid:
     """As far as a box, whose sides close it."""
-    from converter.shapes.csg_places import box_planes
+    from converter.shapes.csg_regions import box_planes
 
     sides = list(box_planes(outer.low, outer.high))
     beyond = np.array(outer.high) - np.array(outer.low)
