@@ -23,7 +23,7 @@ from converter.shapes.csg_program import (
 )
 from converter.shapes.csg_regions import region_of
 from converter.shapes.kind import Distances, Facts, Horizon, Intersection
-from converter.shapes.primitives import PRIMITIVE_KINDS, primitive_kind
+from converter.shapes.primitives import primitive_kind
 
 if TYPE_CHECKING:
     from converter.scene.reader import Reader
@@ -145,28 +145,9 @@ def scaled(shape: Csg, factor: float) -> Csg:
 
 
 def simplified(shape: Csg) -> Shape:
-    """A primitive where it is one: of one leaf, or what polyhedra have in common."""
+    """A primitive where one is left of it."""
     program = program_of(shape)
-    if not program.code:
-        return shape
-    if len(program.code) == 1:
-        return program.leaves[0]
-    common = fold(program.code, lambda k: _convex(program.leaves[k]), _common)
-    if common is None or not PRIMITIVE_KINDS[Polyhedron].facts([common])[0].drawn:
-        return shape
-    return common
-
-
-def _convex(leaf: Shape) -> Polyhedron | None:
-    return leaf if isinstance(leaf, Polyhedron) else None
-
-
-def _common(operation: int, a: Polyhedron | None, b: Polyhedron | None) -> Polyhedron | None:
-    """What two polyhedra make, if it is an intersection of half-spaces."""
-    if a is None or b is None or operation == UNION or (operation == DIFFERENCE and len(b.planes) > 1):
-        return None
-    others = b.planes if operation == INTERSECTION else ((-x, -y, -z, -w) for x, y, z, w in b.planes)
-    return Polyhedron((*a.planes, *others))
+    return program.leaves[0] if len(program.code) == 1 else shape
 
 
 # ---- Where it is -----------------------------------------------------------------------------------------------------

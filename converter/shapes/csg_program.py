@@ -99,15 +99,18 @@ def with_leaves(shape: Csg, leaves: Iterator[Primitive]) -> Csg:
 def program_of(shape: Csg) -> Program:
     """What is left of a csg when all is taken out that changes nothing."""
     leaves, facts, codes = _distinct_leaves(shape)
-    table = _Table.of(leaves, facts)
-    code = _expression(shape, iter(codes))
-    code = code if table is None else table.reduced(code)
+    program = _used(*_with_polyhedra_merged(leaves, facts, _expression(shape, iter(codes))))
+    table = _Table.of(program.leaves, program.facts)
+    return program if table is None else _used(program.leaves, program.facts, table.reduced(program.code))
+
+
+def _used(leaves: Sequence[Primitive], facts: Sequence[Facts], code: Code) -> Program:
+    """With the leaves that the code has, in its order."""
     if code == EVERYTHING:
         return Program((), (), (), everything=True)
     used = sorted({k for k in code if k >= 0}, key=code.index)
     places = {k: new for new, k in enumerate(used)}
-    code = tuple(places.get(k, k) for k in code)
-    return Program(tuple(leaves[k] for k in used), code, tuple(facts[k] for k in used))
+    return Program(tuple(leaves[k] for k in used), tuple(places.get(k, k) for k in code), tuple(facts[k] for k in used))
 
 
 @lru_cache(maxsize=256)
@@ -235,6 +238,52 @@ def _looked_into(leaves: list[Primitive]) -> Iterator[tuple[Primitive, Facts]]:
 def _surfaces(leaf: Primitive) -> object:
     """What is equal for leaves that are equal."""
     return frozenset(leaf.planes) if isinstance(leaf, Polyhedron) else leaf
+
+
+# ---- Polyhedra -------------------------------------------------------------------------------------------------------
+
+
+class _Part(NamedTuple):
+    """A part of an expression: its code, and the half-spaces that it is the intersection of, if it is one."""
+
+    code: Code
+    planes: tuple[Plane, ...] | None
+
+
+def _with_polyhedra_merged(
+    leaves: Sequence[Primitive], facts: Sequence[Facts], code: Code
+) -> tuple[list[Primitive], list[Facts], Code]:
+    """The same with one leaf for what polyhedra have in common, and for one that half-spaces are cut off."""
+    merged, known = list(leaves), list(facts)
+
+    def leaf(k: int) -> _Part:
+        return _Part((k,), primitive_kind(leaves[k]).planes(leaves[k]) or None)
+
+    def combined(operation: int, a: _Part, b: _Part) -> _Part:
+        if a.planes and b.planes:
+            if operation == INTERSECTION:
+                return _Part(_combined_codes(operation, a.code, b.code), tuple(dict.fromkeys(a.planes + b.planes)))
+            if operation == DIFFERENCE and len(b.planes) == 1:
+                p, q, r, s = (0.0 - number for number in b.planes[0])
+                return _Part(
+                    _combined_codes(operation, a.code, b.code), tuple(dict.fromkeys((*a.planes, (p, q, r, s))))
+                )
+        return _Part(_combined_codes(operation, settled(a), settled(b)), None)
+
+    def settled(part: _Part) -> Code:
+        if not part.planes or len(part.code) <= 1:
+            return part.code
+        for found, fact in _looked_into([Polyhedron(part.planes)]):
+            if not fact.drawn or fact.plate:
+                return NOTHING
+            same = (k for k, other in enumerate(merged) if _surfaces(other) == _surfaces(found))
+            k = next(same, len(merged))
+            if k == len(merged):
+                merged.append(found)
+                known.append(fact)
+        return (k,)
+
+    return (merged, known, settled(fold(code, leaf, combined))) if code else (merged, known, code)
 
 
 # ---- All combinations of inside and outside --------------------------------------------------------------------------
