@@ -1,6 +1,5 @@
 """Where a csg is: the box around it, points inside and on its surface."""
 
-import math
 from collections.abc import Iterator, Sequence
 from itertools import islice, product
 from typing import NamedTuple
@@ -9,6 +8,7 @@ from converter.scene.model import Csg, Polyhedron, Primitive, Quadric, Sphere, V
 from converter.shapes.csg_program import Program, program_of
 from converter.shapes.csg_regions import Region, region_of
 from converter.shapes.primitives import primitive_kind
+from converter.shapes.same_surfaces import sign_of
 
 MOST_SIDES = 10
 """Surfaces through one point of which all combinations of sides are gone through."""
@@ -64,8 +64,8 @@ def _conditions(leaf: Primitive, point: Vector) -> Iterator[_Side | bool]:
 
 
 def _side(numbers: Sequence[float]) -> _Side:
-    first = next(x for x in numbers if x)
-    return _Side(tuple(math.copysign(1, first) * x for x in numbers), first > 0)
+    sign = sign_of(numbers)
+    return _Side(tuple(sign * x for x in numbers), sign > 0)
 
 
 def inside_point(shape: Csg) -> Vector | None:

@@ -13,7 +13,7 @@ from converter.scene.model import Csg, Operand, Plane, Polyhedron, Primitive, Qu
 from converter.shapes.csg_relations import Relation, relations
 from converter.shapes.kind import Facts
 from converter.shapes.primitives import PRIMITIVE_KINDS, primitive_kind
-from converter.shapes.same_surfaces import same_ball, same_planes, same_quadric
+from converter.shapes.same_surfaces import same_ball, same_planes, same_quadric, sign_of
 
 T = TypeVar("T")
 
@@ -52,6 +52,16 @@ class Program(NamedTuple):
         if not self.code:
             return self.everything
         return bool(fold(self.code, lambda k: int(inside[k]), combined_bits))
+
+    @property
+    def coincident(self) -> bool:
+        """Whether leaves have surfaces in common."""
+        surfaces: list[Sequence[float]] = []
+        for leaf in self.leaves:
+            surfaces += primitive_kind(leaf).planes(leaf)
+            if isinstance(leaf, Quadric):
+                surfaces.append(leaf.coefficients)
+        return len({tuple(sign_of(each) * x for x in each) for each in surfaces}) < len(surfaces)
 
 
 def fold(code: Code, leaf: Callable[[int], T], combine: Callable[[int, T, T], T]) -> T:

@@ -2,7 +2,7 @@
 
 from collections.abc import Iterator, Sequence
 from itertools import pairwise
-from math import hypot
+from math import copysign, hypot
 
 from converter.scene.model import Plane, Quadric, Sphere
 
@@ -79,6 +79,11 @@ def same_quadric(quadric: Quadric, head: Quadric) -> Quadric | None:
         return head
     a, b, c, d, e, f, g, h, i, j = (0.0 - x for x in model)
     return Quadric((a, b, c, d, e, f, g, h, i, j))
+
+
+def sign_of(numbers: Sequence[float]) -> float:
+    """1 or -1, by which to multiply the numbers of a surface for them not to depend on which side of it is inside."""
+    return copysign(1.0, next(x for x in numbers if x))
 
 
 def _near(numbers: Sequence[float], model: Sequence[float]) -> bool:
