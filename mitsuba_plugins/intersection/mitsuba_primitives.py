@@ -38,7 +38,9 @@ class MitsubaPrimitives:
             first_triangle[identifier] = len(primitive_of)
             if surface.shape.meshed and shape.primitive_count() != len(surface.triangles):
                 raise ValueError(f"whitted: mesh {surface.name} has not the triangles that 'geometry' gives planes for")
-            row = {piece: row for row, piece in enumerate(surface.shape.pieces)}
+            row: dict[Any, int] = {}
+            for k, piece in enumerate(surface.shape.pieces):
+                row.setdefault(piece, k)  # a piece of several rows is known by the first
             pieces = surface.triangles or (None,) * shape.primitive_count()
             primitive_of.extend(primitives.first[index] + row.get(piece, 0) for piece in pieces)
         self._object = column(mi.UInt32, object_of)

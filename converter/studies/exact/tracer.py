@@ -211,14 +211,13 @@ class ExactTracer:
     def _meet_quadric(self, index: int, quadric: "_Quadric", ray: Ray) -> Hit | None:
         """The roots of a t^2 + 2 b t + c = 0, where that changes its sign."""
         a, b, c = quadric.along(ray.origin, ray.direction)
-        inside = self._sign(c) < 0
-        if ray.object == index or self._sign(c) == 0:
-            if ray.object != index:
-                self._ties.add("at start")
-            inside = ray.inside if ray.object == index else (self._sign(b) or self._sign(a)) < 0
-            roots = [-2 * b / a] if self._sign(a) and self._sign(b) else []
+        if ray.object == index:
+            inside, roots = ray.inside, self._other_root(a, b)
+        elif self._sign(c) == 0:
+            self._ties.add("at start")
+            inside, roots = (self._sign(b) or self._sign(a)) < 0, self._other_root(a, b)
         elif self._sign(a) == 0:
-            roots = [-c / (2 * b)] if self._sign(b) else []
+            inside, roots = self._sign(c) < 0, [-c / (2 * b)] if self._sign(b) else []
         else:
             discriminant = b * b - a * c
             if self._sign(discriminant) == 0 and self._sign(a) * self._sign(b) < 0:
@@ -226,9 +225,13 @@ class ExactTracer:
             if self._sign(discriminant) <= 0:
                 return None
             root = self._numbers.root(discriminant)
-            roots = [(-b - root) / a, (-b + root) / a]
+            inside, roots = self._sign(c) < 0, [(-b - root) / a, (-b + root) / a]
         ahead = [t for t in roots if self._sign(t) > 0]
         return Hit(min(ahead), index, -1, inside) if ahead else None
+
+    def _other_root(self, a: Number, b: Number) -> list[Number]:
+        """Of a t^2 + 2 b t = 0 but 0; where that is a root twice, none."""
+        return [-2 * b / a] if self._sign(a) and self._sign(b) else []
 
     def _meet_csg(self, index: int, csg: "_Csg", ray: Ray) -> Hit | None:
         """`plane` is the surface's index among all of its leaves'."""

@@ -26,9 +26,9 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Triangles = NDArray[np.int64]
 
-OFF = 1 / 8
+OFF = 1 / 32
 """How much of a pixel the middle of an edge may be off the surface."""
-MOST_TRIANGLES = 1 << 18
+MOST_TRIANGLES = 1 << 19
 """Of one mesh, about: what asks for more stays coarser."""
 AROUND, STEP = 16, 0.5
 """Coarse meshes: corners around an axis, and steps along hyperbolas, in units of their hyperbolic angle."""
@@ -347,8 +347,6 @@ def _refined(frame: Frame, mesh: _Mesh, view: View, bounds: Box | None = None) -
 
     Whether an edge is halved depends on its ends alone, so that neighbours agree, and a triangle stays that has none.
     """
-    if _is_flat(frame):
-        return mesh
     eye = frame.of(view.eye)
     points, triangles, surface = mesh
     finished: list[Triangles] = []
@@ -383,12 +381,6 @@ def _halves(frame: Frame, ends: Floats, eye: Floats, view: View) -> tuple[NDArra
     off = np.linalg.norm(placed - middle, axis=1) - ROUNDING * np.abs(middle).max(axis=1)
     length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
     return (off > OFF * view.pixel * distance) | (length > STRETCH * distance), placed
-
-
-def _is_flat(frame: Frame) -> bool:
-    """Whether it is planes, one, two that are parallel, or two that cross."""
-    rank = int((frame.values != 0).sum())
-    return rank == 0 or (frame.slope == 0 and (rank == 1 or (rank == 2 and frame.constant == 0)))
 
 
 def _to_segments(eye: Floats, ends: Floats) -> Floats:
