@@ -2,10 +2,14 @@
 
 import ast
 import math
+import signal
+import subprocess
+import sys
 from pathlib import Path
 
 import numpy as np
 import pytest
+from variant import VARIANT
 
 import mitsuba_plugins
 from converter.scene.settings import Settings
@@ -108,6 +112,8 @@ def test_projected_bitmap_truncates_and_repeats(mi):
 
 def test_every_width_of_a_projected_bitmap_repeats_exactly(mi):
     """Dr.Jit would multiply by the width's rounded reciprocal, and miss by a whole image."""
+    from mitsuba_plugins.intersection.columns import column
+
     repeats = 4
     for width in range(1, 2049):
         texels = np.repeat(np.arange(width, dtype=np.float32), 3).reshape(1, width, 3)
@@ -115,13 +121,48 @@ def test_every_width_of_a_projected_bitmap_repeats_exactly(mi):
             {"type": "projected_bitmap", "data": mi.TensorXf(texels), "to_s": "1 0 0 0", "to_r": "0 0 0 0"}
         )
         whole = np.arange(-repeats * width, repeats * width + 1)
-        found = np.asarray(texture._wrap(mi.Float64(whole.astype(float)), texture.width))
+        found = np.asarray(texture._wrap(column(mi.Float64, whole), texture.width))
         assert np.array_equal(found, whole % width), width
         # Numbers of which all products with the width are doubles.
         sixteenths = np.arange(-16 * repeats, 16 * repeats + 1)
-        found = np.asarray(texture.color_at(mi.Point3d(mi.Float64(sixteenths / 16), 0, 0)).x)
+        found = np.asarray(texture.color_at(mi.Point3d(column(mi.Float64, sixteenths / 16), 0, 0)).x)
         position = np.abs(sixteenths) * width // 16 * np.sign(sixteenths)
         assert np.array_equal(found, position % width), width
+
+
+# ---- NumPy's memory
+
+AT_THE_END = """
+import ctypes, mmap
+import numpy as np
+import mitsuba_plugins, mitsuba as mi
+from mitsuba_plugins.intersection.columns import column
+
+mitsuba_plugins.set_variant({variant!r})
+memory = mmap.mmap(-1, 2 * mmap.PAGESIZE)
+start = ctypes.addressof(ctypes.c_char.from_buffer(memory))
+count, offset = 17, mmap.PAGESIZE - 17 * 8
+numbers = np.frombuffer(memory, np.float64, count, offset)
+numbers[:] = np.arange(count)
+assert ctypes.CDLL(None).mprotect(ctypes.c_void_p(start + mmap.PAGESIZE), ctypes.c_size_t(mmap.PAGESIZE), 0) == 0
+print(np.asarray({kind}(mi.Float64, numbers) + 1).sum(), flush=True)
+"""
+
+
+def at_the_end(kind):
+    program = AT_THE_END.format(variant=VARIANT, kind=kind)
+    return subprocess.run([sys.executable, "-c", program], capture_output=True, text=True)
+
+
+@pytest.mark.skipif(VARIANT != "llvm_ad_rgb", reason="only LLVM's kernels read NumPy's memory in place")
+def test_drjit_reads_past_the_end_of_numpys_memory():
+    """Why `column` exists: a kernel reads whole packets. Where this does not fail any more, it is not needed."""
+    assert at_the_end("(lambda kind, numbers: kind(numbers))").returncode == -signal.SIGSEGV
+
+
+def test_columns_end_where_their_numbers_end(mi):
+    result = at_the_end("column")
+    assert (result.stdout, result.stderr) == ("153.0\n", "")
 
 
 # ---- The BSDF
@@ -275,6 +316,7 @@ def test_quotients_are_rounded_once(mi):
 
 HOST_DIVISIONS = {
     "intersection/analytic.py": {"_bound"},
+    "intersection/columns.py": {"column"},
     "intersection/rounding.py": {"camera_errors"},
     "intersection/shapes/polyhedron.py": {"contacts", "_normalised"},
     "intersection/shapes/quadric.py": {"_form", "_rows", "_anchor", "_contact"},
@@ -307,6 +349,22 @@ def test_drjit_exp2_in_double_precision_overflows_where_it_should_underflow(mi):
     import drjit as dr
 
     assert np.isinf(dr.exp2(mi.Float64(-1023.8))[0])
+
+
+@pytest.mark.parametrize("sine", [0.28, 0.352, 0.6, 0.8, 0.936, 0.96])
+def test_at_the_critical_angle_a_ray_is_refracted_along_the_surface(mi, sine):
+    """Sines of Pythagorean triples, and frames of whole numbers."""
+    from mitsuba_plugins.intersection.rays import refract
+
+    cosine = round(math.sqrt(1 - sine**2), 3)
+    frames = np.array(
+        [[(2, 3, 6), (3, -6, 2)], [(6, 2, -3), (2, 3, 6)], [(1, 4, 8), (8, -4, 1)], [(0, 9, 0), (9, 0, 0)]]
+    )
+    normal, along = (frames[:, i] / np.linalg.norm(frames[:, i], axis=1)[:, None] for i in (0, 1))
+    d = mi.Vector3d((sine * along - cosine * normal).T)
+    bent, total, _ = refract(d, mi.Vector3d(normal.T), mi.Float64(1 / sine))
+    assert not np.asarray(total).any()
+    assert np.allclose(np.asarray(bent).T, along, atol=1e-15)
 
 
 def test_power_underflows(mi):

@@ -132,7 +132,7 @@ def test_a_ball_is_drawn_as_a_ball(center, radius, factor):
         assert ball == Sphere(center, radius)
     assert ball.center == pytest.approx(center, rel=1e-15, abs=0)
     assert ball.radius**2 == pytest.approx(radius**2, rel=0, abs=2**-50 * (x * x + y * y + z * z + radius * radius))
-    assert simplified(outside := quadric(-factor * n for n in numbers)) is outside
+    assert simplified(outside := quadric(-factor * n for n in numbers)) == outside
 
 
 @given(st.tuples(whole, whole, whole).filter(any), st.integers(-999, 999), st.integers(1, 999))

@@ -12,6 +12,7 @@ from numpy.typing import NDArray
 
 from converter.renderers.records import MOST_RAYS, HitRecord, LightRecord, PixelRecord, RayKind, RayRecord
 from converter.scene.settings import Settings
+from mitsuba_plugins.intersection.columns import column
 from mitsuba_plugins.intersection.rays import NOTHING, Ray, lanes
 
 
@@ -28,13 +29,15 @@ def trace_pixels(scene: Any, settings: Settings, pixels: Sequence[tuple[int, int
     offsets = integrator.sample_offsets(settings.samples)
     x, y = (np.array([pixel[k] + offset[k] for pixel in pixels for offset in offsets], float) for k in (0, 1))
     with integrator.prepared(scene, sensor):
-        rays = _Rays.of(integrator.primary_ray(sensor, mi.Point2d(x, y)), len(x))
+        rays = _Rays.of(
+            integrator.primary_ray(sensor, mi.Point2d(column(mi.Float64, x), column(mi.Float64, y))), len(x)
+        )
         roots = _Tracer(integrator).trees(rays)
     result = []
-    for i, (column, row) in enumerate(pixels):
+    for i, pixel in enumerate(pixels):
         samples = roots[i * len(offsets) : (i + 1) * len(offsets)]
         color = tuple(sum(ray.radiance[k] for ray in samples) / len(samples) for k in range(3))
-        result.append(PixelRecord(column, row, color, samples))
+        result.append(PixelRecord(*pixel, color, samples))
     return result
 
 
@@ -62,11 +65,11 @@ class _Rays:
         return Ray(
             types.Point3(o),
             types.Vector3(d),
-            mi.UInt32(index),
-            mi.UInt32(primitive),
-            mi.Bool(inside),
-            types.Float(t_min),
-            types.Float(spread),
+            column(mi.UInt32, index),
+            column(mi.UInt32, primitive),
+            column(mi.Bool, inside),
+            column(types.Float, t_min),
+            column(types.Float, spread),
         )
 
     def places(self) -> tuple[list[tuple[float, ...]], list[tuple[float, ...]]]:
@@ -124,7 +127,7 @@ class _Tracer:
         through, total = integrator.transmitted(ray, hit, finish.eta)
         mirrored = integrator.reflected(ray, hit)
         depth = level[0].depth + 1
-        throughput = integrator.types.Float(np.array([record.throughput for record in level]))
+        throughput = column(integrator.types.Float, [record.throughput for record in level])
         mirror_throughput, mirrors, through_throughput, refracts = integrator.followed(
             throughput, dr.opaque(mi.UInt32, depth, count), hit, finish
         )

@@ -33,8 +33,10 @@ def _load(mi: Any, name: str, element: dict[str, Any]) -> Any:
     if element["type"] == "mesh":
         return _mesh(mi, name, element["mesh"], element["bsdf"])
     if "data" in element:
+        from mitsuba_plugins.intersection.columns import column
+
         image = element["data"]
-        texels = np.asarray(image.texels, dtype=np.float32).ravel()
+        texels = column(mi.Float, np.asarray(image.texels, dtype=np.float32))
         element = element | {"data": mi.TensorXf(texels, (image.height, image.width, 3))}
     plugin = mi.load_dict(element)
     plugin.set_id(name)
@@ -43,16 +45,18 @@ def _load(mi: Any, name: str, element: dict[str, Any]) -> Any:
 
 def _mesh(mi: Any, name: str, mesh: Any, bsdf: Any) -> Any:
     """A mesh with a normal for each face, or, where it has them, one for each vertex."""
+    from mitsuba_plugins.intersection.columns import column
+
     props = mi.Properties()
     props["mesh_bsdf"] = bsdf
     normals = getattr(mesh, "normals", None)
     props["face_normals"] = normals is None
     shape = mi.Mesh(name, len(mesh.vertices), len(mesh.triangles), has_vertex_normals=normals is not None, props=props)
     params = mi.traverse(shape)
-    params["vertex_positions"] = np.ravel(mesh.vertices).astype(np.float32)
+    params["vertex_positions"] = column(mi.Float, mesh.vertices)
     if normals is not None:
-        params["vertex_normals"] = np.ravel(normals).astype(np.float32)
-    params["faces"] = np.ravel(mesh.triangles).astype(np.uint32)
+        params["vertex_normals"] = column(mi.Float, normals)
+    params["faces"] = column(mi.UInt32, mesh.triangles)
     params.update()
     shape.set_id(name)
     return shape

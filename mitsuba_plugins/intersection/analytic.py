@@ -46,7 +46,7 @@ class AnalyticSurfaces(ExactSurfaces):
         object_best = mi.UInt32(NOTHING)
         primitive_best = mi.UInt32(0)
         for index in range(len(self._kinds)):
-            crossing = self._intersect(index, ray, reach)
+            crossing = self._intersect(index, ray, reach, which_piece=True)
             t = crossing.t
             close |= crossing.close
             closer = t < t_best
@@ -66,7 +66,7 @@ class AnalyticSurfaces(ExactSurfaces):
         if active:
             reach = largest(ray.o)
             for index in range(len(self._kinds)):
-                crossing = self._intersect(index, ray, reach)
+                crossing = self._intersect(index, ray, reach, which_piece=False)
                 t = crossing.t
                 close |= crossing.close | (t < most_blur(t) * reach)
                 blocks = t < distance
@@ -75,15 +75,17 @@ class AnalyticSurfaces(ExactSurfaces):
                 found = dr.select(blocks, mi.UInt32(index), found)
         return found, close
 
-    def _intersect(self, index: int, ray: Ray, reach: Any) -> Crossing:
+    def _intersect(self, index: int, ray: Ray, reach: Any, which_piece: bool) -> Crossing:
         """Where rays cross one surface."""
         bound = self._bounds[index]
         if bound is not None:
-            return self._intersect_bounded(index, bound, ray, reach)
-        return self._intersect_rows(index, ray, reach)
+            return self._intersect_bounded(index, bound, ray, reach, which_piece)
+        return self._intersect_rows(index, ray, reach, which_piece)
 
     @dr.syntax
-    def _intersect_bounded(self, index: int, bound: tuple[Any, Any], ray: Ray, reach: Any) -> Crossing:
+    def _intersect_bounded(
+        self, index: int, bound: tuple[Any, Any], ray: Ray, reach: Any, which_piece: bool
+    ) -> Crossing:
         """A branch and no mask: most packets of rays pass by most surfaces and save their primitives."""
         t = dr.full(self._types.Float, dr.inf, dr.width(ray.d))
         enters = dr.full(mi.Bool, False, dr.width(ray.d))
@@ -93,11 +95,11 @@ class AnalyticSurfaces(ExactSurfaces):
         f = ray.o - center
         b = -dr.dot(f, ray.d)
         if (dr.squared_norm(f + b * ray.d) <= radius * radius) & (b > -radius):
-            crossing = self._intersect_rows(index, ray, reach)
+            crossing = self._intersect_rows(index, ray, reach, which_piece)
             t, enters, primitive, close = crossing.t, crossing.enters, crossing.primitive, crossing.close
         return Crossing(t, enters, primitive, 0, close)
 
-    def _intersect_rows(self, index: int, ray: Ray, reach: Any) -> Crossing:
+    def _intersect_rows(self, index: int, ray: Ray, reach: Any, which_piece: bool) -> Crossing:
         own = ray.object == index
         rows = ListedRows(self.primitives.first[index], self._rows[index])
-        return first_crossing(self._kinds[index].passage(rows, ray, own, reach), ray, own, reach)
+        return first_crossing(self._kinds[index].passage(rows, ray, own, reach), ray, own, reach, which_piece)

@@ -1,4 +1,4 @@
-"""Arrays that kernels gather from."""
+"""Numbers of NumPy's in Dr.Jit's memory."""
 
 from typing import Any
 
@@ -6,15 +6,22 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
+PACKET = 64
+"""No packet has more lanes."""
+
 
 def column(kind: Any, numbers: Any) -> Any:
     """Numbers (a NumPy array or a list) as an evaluated one-dimensional array, with at least one entry.
 
-    In Dr.Jit's own memory: it borrows NumPy's, which is aligned as it happens, and compiles another kernel where rows
+    In Dr.Jit's own memory. It borrows that of a one-dimensional NumPy array, reads it in whole packets, past its end
+    too, where there may be no memory at all; and it is aligned as it happens, which compiles another kernel where rows
     of four cannot be fetched in one piece.
     """
-    borrowed = kind(np.ravel(numbers) if len(numbers) else np.zeros(1))
-    result = dr.empty(kind, dr.width(borrowed))
-    dr.scatter(result, borrowed, dr.arange(mi.UInt32, dr.width(borrowed)))  # copies and the like are optimised away
+    numbers = np.ravel(numbers) if len(numbers) else np.zeros(1)
+    count = len(numbers)
+    borrowed = kind(np.append(numbers, np.zeros(-count % PACKET, numbers.dtype)))
+    result = dr.empty(kind, count)
+    index = dr.arange(mi.UInt32, count)
+    dr.scatter(result, dr.gather(kind, borrowed, index), index)  # copies and the like are optimised away
     dr.eval(result)
     return result

@@ -40,7 +40,9 @@ class Primitives:
         """The four numbers of a primitive (Vector4)."""
         return dr.gather(self.types.Vector4, self._rows, primitive, active)
 
-    def intersect(self, ray: Ray, index: Any, active: Any, reach: Any, by_rules: bool = False) -> Crossing:
+    def intersect(
+        self, ray: Ray, index: Any, active: Any, reach: Any, which_piece: bool = True, by_rules: bool = False
+    ) -> Crossing:
         """Where each ray crosses an object, a different one for each; `by_rules` of ties, or saying if it is close."""
         own = ray.object == index
         first = dr.gather(mi.UInt32, self._first, index, active)
@@ -49,7 +51,7 @@ class Primitives:
             count = dr.gather(mi.UInt32, self._count, index, active)
             rows = GatheredRows(self, first, count, active, dr.width(ray.d, index))
             passage = (kind.passage_by_rules if by_rules else kind.passage)(rows, ray, own, reach)
-            return first_crossing(passage, ray, own, reach)
+            return first_crossing(passage, ray, own, reach, which_piece)
 
         return self._by_kind(index, active, intersect)
 
