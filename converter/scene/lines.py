@@ -163,9 +163,9 @@ def _read_head(reader: Reader, at: int, section: Section) -> tuple[int | None, i
 
 def _entry_end(reader: Reader, at: int, section: Section) -> int:
     """Index after the entry that begins at the word `at`, as far as the lines tell."""
+    if "csg" in reader.text.cut(at, 3) and (by_words := _csg_end(reader, at, section)):
+        return by_words
     end = reader.text.line_end(at)
-    if "csg" in reader.text.cut(at, 3):
-        return _csg_end(reader, at, section)
     while reader.text.has(end):
         line = reader.text.on_line(end)
         if not section.goes_on(reader.text[at], end - at, line):
@@ -174,15 +174,15 @@ def _entry_end(reader: Reader, at: int, section: Section) -> int:
     return end
 
 
-def _csg_end(reader: Reader, at: int, section: Section) -> int:
-    """Of an entry whose lines may look like entries: the end of the line with its last word, or of the file if it is
-    not whole.
+def _csg_end(reader: Reader, at: int, section: Section) -> int | None:
+    """Of an entry whose lines may look like entries: where its last word ends a line; if it is not whole, that of the
+    file; None where its words end within a line.
     """
     try:
         _, after = section.read(reader.attempt(), at, 0)
     except Lost:
         return HUGE
-    return reader.text.line_end(after - 1)
+    return after if not reader.text.has(after) or reader.text.line_start(after) == after else None
 
 
 def _last_end(reader: Reader, at: int, end: int, section: Section, k: int) -> int:
