@@ -37,7 +37,7 @@ class MeshSurfaces(ExactSurfaces):
         self._scene = scene
         self._found = MitsubaPrimitives(scene, surfaces, primitives)
         self._deviation = column(types.Float, [surface.deviation for surface in surfaces])
-        self._extent = column(types.Float, [surface.shape.extent for surface in surfaces])
+        self._extent = column(types.Float, [surface.extent for surface in surfaces])
 
     def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any, Any]:
         """Distance (infinite for none), object (NOTHING for none) and primitive of the first hit. Looks for no ties."""

@@ -5,6 +5,7 @@ from dataclasses import dataclass
 from typing import Any
 
 import drjit as dr
+import mitsuba as mi
 
 from mitsuba_plugins.intersection.rays import Ray
 from mitsuba_plugins.intersection.rounding import most_blur
@@ -57,6 +58,21 @@ def first_crossing(passage: Passage, ray: Ray, own: Any, reach: Any, which_piece
         t=t,
         enters=to_near if passage.inside_before is False else to_near != passage.inside_before,
         primitive=dr.select(to_near, passage.near_primitive, passage.far_primitive),
-        error=passage.error(to_near, t) if passage.error is not None else 0,
-        close=close,
+        error=type(t)(passage.error(to_near, t) if passage.error is not None else 0),
+        close=mi.Bool(close),
     )
+
+
+@dr.syntax
+def crossing_if(active: Any, ray: Ray, width: int, intersect: Callable[[], Crossing]) -> Crossing:
+    """What `intersect()` gives, in a branch: where packets of rays may all be spared it."""
+    t = dr.full(type(ray.t_min), dr.inf, width)
+    enters = dr.full(mi.Bool, False, width)
+    primitive = dr.zeros(mi.UInt32, width)
+    error = dr.zeros(type(ray.t_min), width)
+    close = dr.full(mi.Bool, False, width)
+    if active:
+        crossing = intersect()
+        t, enters, primitive, close = crossing.t, crossing.enters, crossing.primitive, crossing.close
+        error += crossing.error
+    return Crossing(t, enters, primitive, error, close)

@@ -8,10 +8,11 @@ import mitsuba as mi
 
 from mitsuba_plugins.intersection.columns import column
 from mitsuba_plugins.intersection.geometry import Surface
-from mitsuba_plugins.intersection.passages import Crossing, first_crossing
-from mitsuba_plugins.intersection.rays import Ray, Real
-from mitsuba_plugins.intersection.shapes.kind import SurfacePoint
+from mitsuba_plugins.intersection.passages import Crossing, crossing_if, first_crossing
+from mitsuba_plugins.intersection.rays import UPRIGHT, Ray, Real
+from mitsuba_plugins.intersection.shapes.kind import ShapeKind, SurfacePoint
 from mitsuba_plugins.intersection.shapes.table import SHAPE_KINDS
+from mitsuba_plugins.intersection.solids import Csg, Single, Solid
 
 
 class Primitives:
@@ -19,25 +20,30 @@ class Primitives:
 
     def __init__(self, types: Real, surfaces: list[Surface]) -> None:
         rows: list[Any] = []
+        kinds: list[ShapeKind] = []
         self.first = []
         """The index of each object's first primitive."""
         for surface in surfaces:
             self.first.append(len(rows))
-            rows.extend(surface.shape.rows)
+            rows.extend(surface.rows)
+            kinds.extend(kind for kind, shape in surface.shapes for _ in shape.rows)
         self.types = types
-        present = {id(surface.kind): surface.kind for surface in surfaces}
-        self.any_concave = not all(kind.CONVEX for kind in present.values())
+        self._kinds = list(dict.fromkeys(kinds)) or list(SHAPE_KINDS.values())[:1]  # of nothing any kind will do
+        self._solids = list(dict.fromkeys(surface.solid for surface in surfaces)) or [Single(self._kinds[0])]
+        self.any_concave = not all(solid.convex for solid in self._solids)
         """Whether rays may meet again what they leave."""
-        self._kinds = list(present.values()) or list(SHAPE_KINDS.values())[:1]  # of nothing any kind will do
+        self.any_csg = any(isinstance(solid, Csg) for solid in self._solids)
+        """Whether primitives may be marked as `INVERTED`."""
         self._rows = column(types.Float, rows)
-        self._kind = column(mi.UInt32, [self._kinds.index(surface.kind) for surface in surfaces])
+        self._kind = column(mi.UInt32, [self._kinds.index(kind) for kind in kinds])
+        self._solid = column(mi.UInt32, [self._solids.index(surface.solid) for surface in surfaces])
         self._first = column(mi.UInt32, self.first)
-        self._count = column(mi.UInt32, [len(surface.shape.rows) for surface in surfaces])
+        self._count = column(mi.UInt32, [len(surface.rows) for surface in surfaces])
         self.object_count = mi.UInt32(len(surfaces))
         dr.make_opaque(self.object_count)
 
     def row(self, primitive: Any, active: Any) -> Any:
-        """The four numbers of a primitive (Vector4)."""
+        """The four numbers of a row (Vector4), by its index."""
         return dr.gather(self.types.Vector4, self._rows, primitive, active)
 
     def intersect(
@@ -46,47 +52,55 @@ class Primitives:
         """Where each ray crosses an object, a different one for each; `by_rules` of ties, or saying if it is close."""
         own = ray.object == index
         first = dr.gather(mi.UInt32, self._first, index, active)
+        width = dr.width(ray.d, index)
 
-        def intersect(kind: Any, active: Any) -> Crossing:
+        def intersect(solid: Solid, active: Any) -> Crossing:
             count = dr.gather(mi.UInt32, self._count, index, active)
-            rows = GatheredRows(self, first, count, active, dr.width(ray.d, index))
-            passage = (kind.passage_by_rules if by_rules else kind.passage)(rows, ray, own, reach)
-            return first_crossing(passage, ray, own, reach, which_piece)
+            rows = GatheredRows(self, first, count, active, width)
+            asked = rows, ray, own, reach, by_rules, which_piece
+            if isinstance(solid, Csg):  # worth a branch
+                return crossing_if(active, ray, width, lambda: solid.intersect(*asked))
+            return solid.intersect(*asked)
 
-        return self._by_kind(index, active, intersect)
+        return _by_kind(self._solids, self._solid, index, active, intersect)
 
     def intersect_one(self, ray: Ray, index: Any, primitive: Any, active: Any, reach: Any) -> Crossing:
         """Where each ray crosses one primitive of an object, the others left away."""
         own = ray.object == index
 
-        def intersect(kind: Any, active: Any) -> Crossing:
+        def intersect(kind: ShapeKind, active: Any) -> Crossing:
             rows = GatheredRows(self, primitive, mi.UInt32(1), active, dr.width(ray.d, index))
             return first_crossing(kind.passage(rows, ray, own, reach), ray, own, reach)
 
-        return self._by_kind(index, active, intersect)
+        return _by_kind(self._kinds, self._kind, primitive, active, intersect)
 
     def surface_at(self, ray: Ray, index: Any, primitive: Any, p: Any, active: Any, reach: Any) -> SurfacePoint:
-        """The point of a primitive nearest to a point near it that a ray has met."""
+        """The point of a primitive of object `index` nearest to a point near it that a ray has met."""
         own = ray.object == index
-        first = self.row(primitive, active)  # in one gather for all kinds
+        row = primitive & UPRIGHT if self.any_csg else primitive
+        first = self.row(row, active)  # in one gather for all kinds
 
-        def surface_at(kind: Any, active: Any) -> SurfacePoint:
-            rows = GatheredRows(self, primitive, mi.UInt32(1), active, dr.width(ray.d, index), first)
+        def surface_at(kind: ShapeKind, active: Any) -> SurfacePoint:
+            rows = GatheredRows(self, row, mi.UInt32(1), active, dr.width(ray.d, index), first)
             return kind.surface_at(rows, p, ray, own, reach)
 
-        return self._by_kind(index, active, surface_at)
-
-    def _by_kind(self, index: Any, active: Any, answer: Callable[[Any, Any], Any]) -> Any:
-        """What `answer(kind, active)` gives for the kind of each object."""
-        if len(self._kinds) == 1:
-            return answer(self._kinds[0], active)
-        number = dr.gather(mi.UInt32, self._kind, index, active)
-        result = None
-        for k, kind in enumerate(self._kinds):
-            chosen = number == k
-            found = answer(kind, active & chosen)
-            result = found if result is None else dr.select(chosen, found, result)
+        result: SurfacePoint = _by_kind(self._kinds, self._kind, row, active, surface_at)
+        if self.any_csg:
+            result.n = dr.select(primitive == row, result.n, -result.n)
         return result
+
+
+def _by_kind(kinds: list[Any], column: Any, index: Any, active: Any, answer: Callable[[Any, Any], Any]) -> Any:
+    """What `answer(kind, active)` gives for the kind, by its number, that stands at an index of a column."""
+    if len(kinds) == 1:
+        return answer(kinds[0], active)
+    number = dr.gather(mi.UInt32, column, index, active)
+    result = None
+    for k, kind in enumerate(kinds):
+        chosen = number == k
+        found = answer(kind, active & chosen)
+        result = found if result is None else dr.select(chosen, found, result)
+    return result
 
 
 class GatheredRows:
@@ -102,9 +116,9 @@ class GatheredRows:
         self._active = active
         self.width = width
 
-    def primitive(self) -> Any:
-        """The index of the first."""
-        return self._first
+    def primitive(self, k: int = 0) -> Any:
+        """The index of the row k after the first."""
+        return self._first + k if k else self._first
 
     def row(self, k: int = 0) -> Any:
         """The row k after the first."""
@@ -132,9 +146,9 @@ class ListedRows:
         self._first = first
         self._rows = rows
 
-    def primitive(self) -> Any:
-        """The index of the first."""
-        return mi.UInt32(self._first)
+    def primitive(self, k: int = 0) -> Any:
+        """The index of the row k after the first."""
+        return mi.UInt32(self._first + k)
 
     def row(self, k: int = 0) -> Any:
         """The row k after the first."""

@@ -38,8 +38,8 @@ class Rows(Protocol):
     width: int
     """Of arrays that differ from row to row."""
 
-    def primitive(self) -> Any:
-        """The index of the first (UInt32)."""
+    def primitive(self, k: int = 0) -> Any:
+        """The index of the row k after the first, if a primitive begins there (UInt32)."""
         ...
 
     def row(self, k: int = 0) -> Any:
@@ -77,6 +77,8 @@ class ShapeKind(Protocol):
 
     ROWS: int
     """Of each primitive."""
+    FACETED: bool
+    """Whether a shape has several primitives, planes, and a point of one may lie beside the shape."""
     CONVEX: bool
     """Whether a ray that leaves a shape never meets it again."""
     BOUNDED_FIRST: bool
@@ -90,12 +92,16 @@ class ShapeKind(Protocol):
         """
         ...
 
+    def turned(self, rows: tuple[Row, ...]) -> tuple[Row, ...] | None:
+        """The rows of a primitive whose inside is another's outside, if there are such."""
+        ...
+
     def contacts(self, point: Any, rows: Any) -> list[Contact]:
         """Which of some primitives, (n, m) as given, a point (3,) lies on, in their order."""
         ...
 
     def contains(self, point: Any, rows: Any) -> bool:
-        """Whether a point that lies on one of a shape's primitives, as given, is on the shape."""
+        """Whether a shape, its primitives as given, contains a point, as far as decimals can say."""
         ...
 
     # ---- In a kernel: `own` where the ray starts on the shape, `reach` the largest coordinate of its origin

@@ -16,6 +16,7 @@ from mitsuba_plugins.intersection.shapes.kind import Contact, Row, Rows, Shape, 
 from native_tracer.incidence import surfaces_at, within
 
 ROWS = 1
+FACETED = True
 CONVEX = True
 BOUNDED_FIRST = True
 
@@ -39,8 +40,13 @@ def contacts(point: Any, rows: Any) -> list[Contact]:
     return found
 
 
+def turned(rows: tuple[Row, ...]) -> tuple[Row, ...] | None:
+    """The half-space beyond."""
+    return tuple((-a, -b, -c, -d) for a, b, c, d in rows)
+
+
 def contains(point: Any, rows: Any) -> bool:
-    """Whether it lies on a face, and not in the face's plane beside it."""
+    """In all half-spaces, or on their borders."""
     return within(point, rows)
 
 

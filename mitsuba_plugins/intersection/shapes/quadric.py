@@ -33,6 +33,7 @@ from mitsuba_plugins.intersection.rounding import epsilon, input_error, most_blu
 from mitsuba_plugins.intersection.shapes.kind import Contact, Row, Rows, Shape, SurfacePoint
 
 ROWS = 4
+FACETED = False
 CONVEX = False
 BOUNDED_FIRST = True
 
@@ -46,7 +47,10 @@ DISTINCT = 2.0**-10
 def read(entry: dict[str, Any]) -> Shape:
     """`"quadric": [A, ..., J]`, and `"box"` or null."""
     numbers = [float(x) for x in entry["quadric"]]
-    return Shape([tuple(numbers)], _rows(numbers), (None,) * 4, entry.get("box"))
+    # The same rows for a quadric and its complement, but for the signs.
+    first = next((x for x in numbers if x != 0), 1.0)
+    rows = _rows(numbers) if first > 0 else [*(turned(tuple(_rows([-x for x in numbers]))) or ())]
+    return Shape([tuple(numbers)], rows, (None,) * 4, entry.get("box"))
 
 
 def contacts(point: Any, rows: Any) -> list[Contact]:
@@ -54,9 +58,18 @@ def contacts(point: Any, rows: Any) -> list[Contact]:
     return [contact for k, row in enumerate(rows) if (contact := _contact(point, row, k)) is not None]
 
 
+def turned(rows: tuple[Row, ...]) -> tuple[Row, ...] | None:
+    """All signs turned, but those of the place and of the errors."""
+    (x, y, z, k), *others = rows
+    return (x, y, z, -k), *((-a, -b, -c, error) for a, b, c, error in others)
+
+
 def contains(point: Any, rows: Any) -> bool:
-    """It has no other points."""
-    return True
+    """By the sign, or on it."""
+    q, form = [*map(Fraction, point.tolist())], _form(rows[0].tolist())
+    half = form.half_gradient(q)
+    value = sum((x * (h + g) for x, h, g in zip(q, half, form.g, strict=True)), form.k)
+    return value <= 0 or _contact(point, rows[0], 0) is not None
 
 
 @dataclass(frozen=True)

@@ -1,5 +1,6 @@
 """A sphere: its centre and radius."""
 
+import math
 from typing import Any
 
 import drjit as dr
@@ -9,10 +10,11 @@ from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.intersection.passages import Passage
 from mitsuba_plugins.intersection.rays import Ray, largest
 from mitsuba_plugins.intersection.rounding import epsilon, most_blur
-from mitsuba_plugins.intersection.shapes.kind import Contact, Rows, Shape, SurfacePoint
+from mitsuba_plugins.intersection.shapes.kind import Contact, Row, Rows, Shape, SurfacePoint
 from native_tracer.incidence import surfaces_at
 
 ROWS = 1
+FACETED = False
 CONVEX = True
 BOUNDED_FIRST = False
 
@@ -36,9 +38,15 @@ def contacts(point: Any, rows: Any) -> list[Contact]:
     return found
 
 
+def turned(rows: tuple[Row, ...]) -> tuple[Row, ...] | None:
+    """There are none that are hollow."""
+    return None
+
+
 def contains(point: Any, rows: Any) -> bool:
-    """It has no other points."""
-    return True
+    """By the distance from the centre, or on it."""
+    ((x, y, z, radius),) = rows
+    return math.dist(point, (x, y, z)) <= radius or bool(contacts(point, rows))
 
 
 def passage(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
