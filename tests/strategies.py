@@ -10,12 +10,15 @@ from hypothesis import strategies as st
 from converter.scene.model import (
     Camera,
     Checker,
+    Csg,
     Finish,
     Light,
     Object,
+    Operand,
     Pigment,
     Plane,
     Polyhedron,
+    Primitive,
     Quadric,
     Scene,
     Shape,
@@ -24,6 +27,7 @@ from converter.scene.model import (
     Texmap,
     Vector,
 )
+from converter.shapes.csg_program import program_of
 from converter.shapes.quadric_form import kind_of
 
 coordinates = st.floats(-1000, 1000)
@@ -99,9 +103,22 @@ def quadrics(draw: st.DrawFn) -> Quadric:
     return shape
 
 
-def shapes() -> st.SearchStrategy[Shape]:
+def primitives() -> st.SearchStrategy[Primitive]:
     """Of every kind."""
     return st.one_of(st.builds(Sphere, vectors, st.floats(0.01, 1000)), polyhedra(), quadrics())
+
+
+@st.composite
+def csgs(draw: st.DrawFn, levels: int = 3) -> Csg:
+    """Csgs, of which some are nothing."""
+    inner = primitives() if levels == 1 else st.one_of(primitives(), csgs(levels - 1))
+    others = st.builds(Operand, st.sampled_from("+-&"), inner)
+    return Csg((Operand("+", draw(inner)), *draw(st.lists(others, max_size=3))))
+
+
+def shapes() -> st.SearchStrategy[Shape]:
+    """Of every kind, all of them something."""
+    return st.one_of(primitives(), csgs().filter(lambda shape: bool(program_of(shape).code)))
 
 
 @st.composite

@@ -11,18 +11,17 @@ import pytest
 from converter.commands.main import main
 from converter.compare.classes import explain, less_exact
 from converter.compare.margins import (
-    Intersection,
     edge_margin,
     intersections,
     silhouette_margin,
     surface_margin,
-    tie_margin,
 )
 from converter.pigments import checker, solid
 from converter.renderers.methods import METHODS
 from converter.scene.model import Checker, Polyhedron, Solid, Sphere
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
+from converter.shapes.kind import Intersection, tie_margin
 from converter.studies.families.scenes import box
 
 SCENES = sorted((Path(__file__).parent.parent / "scenes").glob("*.in"))

@@ -99,6 +99,7 @@ def test_the_statements_own_example_without_its_texture(tmp_path: Path) -> None:
 LIGHT = "a light needs 9 numbers for position, colour and attenuation, found"
 FINISH = "a finish needs 7 numbers for ka, kd, ks, alpha, kr, kt and ior, found"
 COMMENT, BLANKS = ": a comment starts with '#'", ": blanks separate numbers, and nothing else"
+SPHERE = "sphere needs 4 numbers for its centre and radius, found"
 NO_SURFACE = "this quadric has no surface"
 INSIDE = " (inside is A x^2 + ... + J <= 0)"
 LATER = "an addition to the format that is not supported yet"
@@ -250,8 +251,7 @@ CASES = [
     (22, "sphere 0 32.7 0 20", "quadric 1 1 1 0 0 0 0 0 0 1", 22, 5, f"{NO_SURFACE}: no point is inside{INSIDE}"),
     (22, "sphere 0 32.7 0 20", "quadric -1 0 0 0 0 0 0 0 0 0", 22, 5, f"{NO_SURFACE}: every point is inside{INSIDE}"),
     (22, "sphere 0 32.7 0 20", "quadric 0 0 0 0 0 0 0 0 0 0", 22, 5, f"{NO_SURFACE}: every point is inside{INSIDE}"),
-    (22, "sphere 0 32.7 0 20", "csg 2\n+ 0 0 sphere 1 1 1 1\n- 0 0 sphere 1 1 1 1", 22, 5, f"csg is {LATER}"),
-    (22, "sphere 0 32.7 0 20", "csg 2\n+\n0 0 sphere 1 1 1 1\n-\n0 0 sphere 1 1 1 1", 22, 5, f"csg is {LATER}"),
+    (22, "sphere 0 32.7 0 20", "csg 1\n+ 0 0 sphere 1 1 1", 23, 7, f"{SPHERE} 3 before the end of the line"),
     (22, "20", "20 move 1 0 0", 22, 24, f"move is {LATER}"),
     (28, "-300", "-300 move 1 0 0", 28, 12, f"move is {LATER}"),
     # the end

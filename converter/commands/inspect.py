@@ -5,6 +5,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+from converter.commands.csg_trees import csg_lines
 from converter.commands.exits import OK
 from converter.commands.options import Parser, add_reading_options, settings_from
 from converter.commands.results import TextResult
@@ -128,6 +129,9 @@ def _print(found: dict[str, Any]) -> None:
             for q in found["quadrics"]
         ],
     )
+    for csg in found["csgs"][:MOST_ROWS]:
+        print()
+        print("\n".join(csg_lines(csg)))
     for warning in found["reading_warnings"]:
         print(f"\nwarning: {warning}")
     for notice in found["notices"]:

@@ -6,9 +6,10 @@ from typing import Any
 
 from converter.analysis.cutoff import cutoff_bound
 from converter.analysis.notices import ior_notices, scene_notices
+from converter.commands.csg_trees import csg_trees
 from converter.pigments.table import pigment_kind
 from converter.scene.geometry import simplified
-from converter.scene.model import Finish, Pigment, Quadric, Scene
+from converter.scene.model import Finish, Pigment, Polyhedron, Quadric, Scene
 from converter.scene.needs import SceneNeeds, is_index, scene_needs
 from converter.scene.settings import Settings
 from converter.shapes.quadric import classified
@@ -37,6 +38,7 @@ def inspect_scene(scene: Scene, settings: Settings) -> dict[str, Any]:
         },
         "polyhedra": polyhedra,
         "quadrics": _quadrics(scene, drawn, needs),
+        "csgs": csg_trees(scene, drawn, needs),
         "closing_box": _closing_box(drawn, needs, settings),
         "unused": {
             "pigments": [i for i in range(len(scene.pigments)) if i not in needs.pigments],
@@ -112,7 +114,8 @@ def _polyhedra(scene: Scene, needs: SceneNeeds) -> list[dict[str, Any]]:
             "plate": needs.plates[i],
         }
         for i, o in enumerate(scene.objects)
-        if (planes := shape_kind(o.shape).planes(o.shape))
+        if isinstance(o.shape, Polyhedron)
+        for planes in (o.shape.planes,)
     ]
 
 

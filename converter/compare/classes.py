@@ -26,7 +26,6 @@ from converter.compare.margins import (
     intersections,
     silhouette_margin,
     surface_margin,
-    tie_margin,
 )
 from converter.compare.metrics import LIMIT, Pixels, absolute_difference
 from converter.compare.rays import Pair, pair_trees
@@ -36,6 +35,7 @@ from converter.scene.geometry import simplified
 from converter.scene.model import Scene, Shape
 from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings
+from converter.shapes.kind import tie_margin
 from converter.shapes.table import shape_kind
 
 if TYPE_CHECKING:

@@ -53,6 +53,13 @@ class Intersection(NamedTuple):
     cosine: float
 
 
+def tie_margin(a: Intersection, b: Intersection) -> float:
+    """From two surfaces that a ray crosses to where it crosses them in the other order."""
+    if a.cosine == 0 or b.cosine == 0:
+        return 0.0
+    return abs(a.t - b.t) / (1 / abs(a.cosine) + 1 / abs(b.cosine))
+
+
 class Horizon(NamedTuple):
     """How much of a shape a picture may show from an eye.
 

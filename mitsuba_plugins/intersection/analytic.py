@@ -46,7 +46,7 @@ class AnalyticSurfaces(ExactSurfaces):
         object_best = mi.UInt32(NOTHING)
         primitive_best = mi.UInt32(0)
         for index in range(len(self._solids)):
-            crossing = self._intersect(index, ray, reach)
+            crossing = self._intersect(index, ray, reach, which_piece=True)
             t = crossing.t
             close |= crossing.close
             closer = t < t_best
@@ -66,7 +66,7 @@ class AnalyticSurfaces(ExactSurfaces):
         if active:
             reach = largest(ray.o)
             for index in range(len(self._solids)):
-                crossing = self._intersect(index, ray, reach)
+                crossing = self._intersect(index, ray, reach, which_piece=False)
                 t = crossing.t
                 close |= crossing.close | (t < most_blur(t) * reach)
                 blocks = t < distance
@@ -75,19 +75,19 @@ class AnalyticSurfaces(ExactSurfaces):
                 found = dr.select(blocks, mi.UInt32(index), found)
         return found, close
 
-    def _intersect(self, index: int, ray: Ray, reach: Any) -> Crossing:
+    def _intersect(self, index: int, ray: Ray, reach: Any, which_piece: bool) -> Crossing:
         """Where rays cross one surface."""
         bound = self._bounds[index]
         if bound is None:
-            return self._intersect_rows(index, ray, reach)
+            return self._intersect_rows(index, ray, reach, which_piece)
         # A branch and no mask: most packets of rays pass by most surfaces and save their primitives.
         center, radius = bound
         f = ray.o - center
         b = -dr.dot(f, ray.d)
         meets = (dr.squared_norm(f + b * ray.d) <= radius * radius) & (b > -radius)
-        return crossing_if(meets, ray, dr.width(ray.d), lambda: self._intersect_rows(index, ray, reach))
+        return crossing_if(meets, ray, dr.width(ray.d), lambda: self._intersect_rows(index, ray, reach, which_piece))
 
-    def _intersect_rows(self, index: int, ray: Ray, reach: Any) -> Crossing:
+    def _intersect_rows(self, index: int, ray: Ray, reach: Any, which_piece: bool) -> Crossing:
         own = ray.object == index
         rows = ListedRows(self.primitives.first[index], self._rows[index])
-        return self._solids[index].intersect(rows, ray, own, reach, False)
+        return self._solids[index].intersect(rows, ray, own, reach, False, which_piece)

@@ -75,7 +75,7 @@ class BvhSurfaces(ExactSurfaces):
         while searching:
             tested = searching & (index != NOTHING)
             if tested:
-                crossing = self.primitives.intersect(ray, index, tested, reach)
+                crossing = self.primitives.intersect(ray, index, tested, reach, which_piece=light is None)
                 t, primitive = crossing.t, crossing.primitive
                 close |= tested & (crossing.close | (t < most_blur(t) * reach))
                 # Of surfaces at the same distance the first counts.

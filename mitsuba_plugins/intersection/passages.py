@@ -38,11 +38,12 @@ class Crossing:
     close: Any  # Bool, whether that was close to a tie
 
 
-def first_crossing(passage: Passage, ray: Ray, own: Any, reach: Any) -> Crossing:
+def first_crossing(passage: Passage, ray: Ray, own: Any, reach: Any, which_piece: bool = True) -> Crossing:
     """The crossing of a passage that counts: the first that is farther than `t_min`.
 
     `own` where the ray starts on the shape. There the crossing that it starts at is known, and not looked for: the ray
-    travels between the two, to the far one, or else away from both. `reach` is the origin's largest coordinate.
+    travels between the two, to the far one, or else away from both. `reach` is the origin's largest coordinate. Planes
+    may tie where it does not matter `which_piece` of the surface is met.
     """
     to_near = ~own & (passage.near > ray.t_min)
     t = dr.select(to_near, passage.near, passage.far)
@@ -51,7 +52,7 @@ def first_crossing(passage: Passage, ray: Ray, own: Any, reach: Any) -> Crossing
     between = ray.inside if passage.inside_before is False else ray.inside != passage.inside_before
     t = dr.select(own, dr.select(between, dr.maximum(passage.far, 0), dr.inf), t)
     close = passage.close
-    if passage.between is not None:
+    if which_piece and passage.between is not None:
         close |= (t < dr.inf) & (passage.between < most_blur(t) * (reach + t))
     return Crossing(
         t=t,

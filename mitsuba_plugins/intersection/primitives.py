@@ -46,7 +46,9 @@ class Primitives:
         """The four numbers of a row (Vector4), by its index."""
         return dr.gather(self.types.Vector4, self._rows, primitive, active)
 
-    def intersect(self, ray: Ray, index: Any, active: Any, reach: Any, by_rules: bool = False) -> Crossing:
+    def intersect(
+        self, ray: Ray, index: Any, active: Any, reach: Any, which_piece: bool = True, by_rules: bool = False
+    ) -> Crossing:
         """Where each ray crosses an object, a different one for each; `by_rules` of ties, or saying if it is close."""
         own = ray.object == index
         first = dr.gather(mi.UInt32, self._first, index, active)
@@ -55,9 +57,10 @@ class Primitives:
         def intersect(solid: Solid, active: Any) -> Crossing:
             count = dr.gather(mi.UInt32, self._count, index, active)
             rows = GatheredRows(self, first, count, active, width)
+            asked = rows, ray, own, reach, by_rules, which_piece
             if isinstance(solid, Csg):  # worth a branch
-                return crossing_if(active, ray, width, lambda: solid.intersect(rows, ray, own, reach, by_rules))
-            return solid.intersect(rows, ray, own, reach, by_rules)
+                return crossing_if(active, ray, width, lambda: solid.intersect(*asked))
+            return solid.intersect(*asked)
 
         return _by_kind(self._solids, self._solid, index, active, intersect)
 

@@ -32,10 +32,11 @@ class Solid(Protocol):
         """Whether it takes so long to intersect that a sphere around it is tested before."""
         ...
 
-    def intersect(self, rows: Rows, ray: Ray, own: Any, reach: Any, by_rules: bool) -> Crossing:
+    def intersect(self, rows: Rows, ray: Ray, own: Any, reach: Any, by_rules: bool, which_piece: bool) -> Crossing:
         """Where rays first cross it; `by_rules` of ties, or else saying whether that is close to one.
 
-        `own` where a ray starts on it, `reach` the largest coordinate of its origin.
+        `own` where a ray starts on it, `reach` the largest coordinate of its origin; planes may tie where it does not
+        matter `which_piece` is met.
         """
         ...
 
@@ -56,9 +57,9 @@ class Single:
         """As its kind."""
         return self.kind.BOUNDED_FIRST
 
-    def intersect(self, rows: Rows, ray: Ray, own: Any, reach: Any, by_rules: bool) -> Crossing:
+    def intersect(self, rows: Rows, ray: Ray, own: Any, reach: Any, by_rules: bool, which_piece: bool) -> Crossing:
         """At the crossing of its passage that counts."""
-        return first_crossing(_passage(self.kind, rows, ray, own, reach, by_rules), ray, own, reach)
+        return first_crossing(_passage(self.kind, rows, ray, own, reach, by_rules), ray, own, reach, which_piece)
 
 
 @dataclass(frozen=True)
@@ -157,7 +158,7 @@ class Csg:
             stack.append(left | right if code == UNION else both if code == INTERSECTION else left ^ both)
         return stack.pop()
 
-    def intersect(self, rows: Rows, ray: Ray, own: Any, reach: Any, by_rules: bool) -> Crossing:
+    def intersect(self, rows: Rows, ray: Ray, own: Any, reach: Any, by_rules: bool, which_piece: bool) -> Crossing:
         """Where the value first changes."""
         passages = [_leaf_passage(rows, leaf, ray, reach, by_rules) for leaf in self.leaves]
         leaves, starts_inside = self._ahead(passages, ray, reach)

@@ -8,7 +8,7 @@ point: after all that is decided.
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import assert_never
+from typing import Literal, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,6 +18,7 @@ from converter.scene.model import (
     Camera,
     Checker,
     Color,
+    Csg,
     Finish,
     Pigment,
     Polyhedron,
@@ -32,6 +33,7 @@ from converter.scene.model import (
 from converter.scene.needs import is_index, scene_needs
 from converter.scene.settings import Settings
 from converter.studies.exact.arithmetic import Arithmetic, Decimals, Number
+from converter.studies.exact.csg import Along, Leaf, Node, first_met
 from converter.studies.family import Truth
 
 TIES = {
@@ -175,6 +177,8 @@ class ExactTracer:
     def _meet(self, index: int, ray: Ray) -> Hit | None:
         """Where the ray first meets an object, beyond its own start."""
         shape = self._shapes[index]
+        if isinstance(shape, _Csg):
+            return self._meet_csg(index, shape, ray)
         if isinstance(shape, _Quadric):
             return self._meet_quadric(index, shape, ray)
         if ray.object == index and not ray.inside:
@@ -229,6 +233,20 @@ class ExactTracer:
         """Of a t^2 + 2 b t = 0 but 0; where that is a root twice, none."""
         return [-2 * b / a] if self._sign(a) and self._sign(b) else []
 
+    def _meet_csg(self, index: int, csg: "_Csg", ray: Ray) -> Hit | None:
+        """`plane` is the surface's index among all of its leaves'."""
+        along = [surface.along(ray.origin, ray.direction) for surface in csg.surfaces]
+        if ray.object != index and any(self._sign(c) == 0 for _, _, c in along):
+            self._ties.add("at start")
+        if any(self._sign(a) == self._sign(b) == 0 for a, b, _ in along):
+            self._ties.add("along")
+        met = first_met(csg.node, along, self._numbers, lambda: self._ties.add("tangent"))
+        if met is None:
+            return None
+        if met.tied:
+            self._ties.add("seen edge")
+        return Hit(met.distance, index, met.surface, met.inside)
+
     def _meet_polyhedron(self, index: int, planes: "Sequence[_Plane]", ray: Ray) -> Hit | None:
         """The ray is inside between the last plane that it enters and the first that it leaves."""
         from_within = ray.object == index
@@ -236,8 +254,8 @@ class ExactTracer:
         for k, plane in enumerate(planes):
             if from_within and k == ray.plane:
                 continue
-            slope = _dot(plane.normal, ray.direction)
-            height = _dot(plane.normal, ray.origin) + plane.offset
+            slope = _dot(plane.gradient, ray.direction)
+            height = _dot(plane.gradient, ray.origin) + plane.offset
             if self._sign(slope) == 0:
                 self._ties.add("along" if self._sign(height) else "in")
                 if self._sign(height) > 0:
@@ -274,8 +292,9 @@ class ExactTracer:
         finish = self._scene.finishes[thing.finish]
         point = _sum(ray.origin, _scaled(ray.direction, hit.distance))
         shape = self._shapes[hit.object]
-        normal = shape[hit.plane].normal if isinstance(shape, list) else shape.normal(point)
-        if hit.inside:
+        surfaces = shape.surfaces if isinstance(shape, _Csg) else shape
+        normal = (surfaces[hit.plane] if isinstance(surfaces, list) else surfaces).normal(point)
+        if self._sign(_dot(normal, ray.direction)) > 0:
             normal = _scaled(normal, -1)
         pigment = self._colors[thing.pigment](point)
         color = [finish.ka * a * c for a, c in zip(self._scene.ambient, pigment, strict=True)]
@@ -400,7 +419,7 @@ class ExactTracer:
         x, y, z = (self._numbers.number(c) for c in v)
         return (x, y, z)
 
-    def _shape(self, shape: Shape) -> "_Ball | list[_Plane] | _Quadric":
+    def _shape(self, shape: Shape) -> "_Ball | list[_Plane] | _Quadric | _Csg":
         number = self._numbers.number
         match shape:
             case Sphere(center, radius):
@@ -409,13 +428,34 @@ class ExactTracer:
                 return [_Plane(self._vector((a, b, c)), number(d)) for a, b, c, d in planes]
             case Quadric(coefficients):
                 return _Quadric(tuple(map(number, coefficients)))
+            case Csg():
+                surfaces: list[_Ball | _Plane | _Quadric] = []
+                return _Csg(self._node(shape, surfaces), surfaces)
         assert_never(shape)
+
+    def _node(self, shape: Csg, surfaces: "list[_Ball | _Plane | _Quadric]") -> Node:
+        """Its expression; the leaves' surfaces are appended."""
+        steps: list[tuple[Literal["+", "-", "&"], Leaf | Node]] = []
+        for operand in shape.operands:
+            if isinstance(operand.shape, Csg):
+                steps.append((operand.operation, self._node(operand.shape, surfaces)))
+                continue
+            leaf, first = self._shape(operand.shape), len(surfaces)
+            assert not isinstance(leaf, _Csg)
+            surfaces += leaf if isinstance(leaf, list) else [leaf]
+            steps.append((operand.operation, Leaf(range(first, len(surfaces)))))
+        return Node(tuple(steps))
 
 
 @dataclass(frozen=True, slots=True)
 class _Ball:
     center: Vec
     radius: Number
+
+    def along(self, p: Vec, d: Vec) -> Along:
+        """Its value at p + t d."""
+        arm = _difference(p, self.center)
+        return _dot(d, d), _dot(arm, d), _dot(arm, arm) - self.radius * self.radius
 
     def normal(self, point: Vec) -> Vec:
         """Outward, of any length."""
@@ -428,8 +468,8 @@ class _Quadric:
 
     numbers: tuple[Number, ...]
 
-    def along(self, p: Vec, d: Vec) -> tuple[Number, Number, Number]:
-        """The numbers a, b and c of a t^2 + 2 b t + c, which it is at p + t d."""
+    def along(self, p: Vec, d: Vec) -> Along:
+        """Its value at p + t d."""
         g, h, i, j = self.numbers[6:]
         gradient = self.normal(p)
         constant = (_dot(p, gradient) + _dot((g, h, i), p)) / 2 + j
@@ -447,8 +487,24 @@ class _Quadric:
 
 @dataclass(frozen=True, slots=True)
 class _Plane:
-    normal: Vec
+    gradient: Vec
     offset: Number
+
+    def along(self, p: Vec, d: Vec) -> Along:
+        """Its value at p + t d."""
+        return 0 * self.offset, _dot(self.gradient, d) / 2, _dot(self.gradient, p) + self.offset
+
+    def normal(self, point: Vec) -> Vec:
+        """The same everywhere."""
+        return self.gradient
+
+
+@dataclass(frozen=True, slots=True)
+class _Csg:
+    """An expression over leaves, and their surfaces."""
+
+    node: Node
+    surfaces: "list[_Ball | _Plane | _Quadric]"
 
 
 @dataclass(slots=True)

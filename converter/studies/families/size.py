@@ -8,7 +8,7 @@ from typing import assert_never
 import numpy as np
 
 from converter.renderers.native import NativeRenderer
-from converter.scene.model import Checker, Finish, Object, Plane, Polyhedron, Quadric, Scene, Shape, Sphere, Vector
+from converter.scene.model import Checker, Csg, Finish, Object, Plane, Polyhedron, Quadric, Scene, Shape, Sphere, Vector
 from converter.shapes import quadric_form
 from converter.studies.families.scenes import (
     GLASS,
@@ -91,6 +91,8 @@ def moved(whole: Scene, way: Vector) -> Scene:
                 return Polyhedron(tuple(map(plane, planes)))
             case Quadric():
                 return quadric_form.moved(s, [Fraction(x) for x in way])
+            case Csg(operands):
+                return Csg(tuple(replace(operand, shape=shape(operand.shape)) for operand in operands))
         assert_never(s)
 
     view = whole.camera

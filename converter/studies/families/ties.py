@@ -13,6 +13,7 @@ from typing import assert_never
 from converter.scene.model import (
     Camera,
     Checker,
+    Csg,
     Pigment,
     Plane,
     Polyhedron,
@@ -171,6 +172,8 @@ def _moved(whole: Scene, times: float) -> Scene:
                 return Polyhedron(tuple(map(plane, planes)))
             case Quadric():
                 return quadric_form.moved(s, shift, _UNIT)
+            case Csg(operands):
+                return Csg(tuple(replace(operand, shape=shape(operand.shape)) for operand in operands))
         assert_never(s)
 
     def pigment(p: Pigment) -> Pigment:
