@@ -41,7 +41,9 @@ CanonicalForm canonical_form(const QuadricDescription& quadric) {
         largest = std::max(largest, std::abs(Real(q[i])));
     }
     CanonicalForm form{};
-    form.scale = std::scalbn(Real(1), -std::ilogb(largest));  // a power of two, so that no digit is lost
+    // A power of two, so that no digit is lost, with a sign by which a quadric that is turned inside out is the same.
+    const double first = *std::find_if(q.begin(), q.end(), [](double number) { return number != 0; });
+    form.scale = std::copysign(std::scalbn(Real(1), -std::ilogb(largest)), Real(first));
     const auto scaled = [&](std::size_t i) { return form.scale * q[i]; };
     const Matrix matrix{{{scaled(0), scaled(3) / 2, scaled(4) / 2},
                          {scaled(3) / 2, scaled(1), scaled(5) / 2},
@@ -93,7 +95,11 @@ CanonicalForm canonical_form(const QuadricDescription& quadric) {
     }
     for (std::size_t k = 0; k < 3; ++k) {
         form.center[k] = form.axes[k][0] * along[0] + form.axes[k][1] * along[1] + form.axes[k][2] * along[2];
+        form.bend[k] *= std::copysign(Real(1), form.scale);
+        form.linear[k] *= std::copysign(Real(1), form.scale);
     }
+    form.constant *= std::copysign(Real(1), form.scale);
+    form.scale = std::abs(form.scale);
     return form;
 }
 

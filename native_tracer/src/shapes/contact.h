@@ -18,6 +18,7 @@ struct Contact {
     Real curvature;        // by how much it turns along a unit of length, at most
     bool flat;             // it is part of a plane
     bool on_body;          // the point lies on the object, and not only in the plane of a face beside the face
+    int body;              // the first primitive of the convex shape, or the quadric, that this is part of; -1: none
 
     // Whether rays that lead to the point cross the object there, and no sooner: a plane wherever they do; of a surface
     // that they meet twice, once from without and once from within, it is the place of the same kind.
@@ -31,8 +32,8 @@ struct Contact {
 // first.
 template <typename Real>
 struct EyeContact {
-    int object = -1, primitive = -1;
-    std::vector<Vector<Real>> outward;  // of all the object's primitives that the eye lies on
+    int object = -1, primitive = -1, body = -1;
+    std::vector<Vector<Real>> outward;  // of all the body's primitives that the eye lies on
     Real curvature = 0;
 
     // Rays along a plane, too, for a body is closed; not those that touch a sphere. Eye and directions may be off.

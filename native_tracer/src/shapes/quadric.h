@@ -10,6 +10,7 @@
 #include "shapes/contact.h"
 #include "shapes/crossing.h"
 #include "shapes/sight.h"
+#include "shapes/start.h"
 #include "tracing/camera.h"
 #include "tracing/description.h"
 #include "tracing/incidence.h"
@@ -33,7 +34,7 @@ class Quadric {
 
     static int primitive_count(const QuadricDescription&) { return 1; }
 
-    Quadric(const QuadricDescription& quadric, int object, int first_primitive)
+    [[gnu::noinline]] Quadric(const QuadricDescription& quadric, int object, int first_primitive)
         : Quadric(canonical_form(quadric), quadric, object, first_primitive) {}
 
     int object() const { return object_; }
@@ -43,10 +44,9 @@ class Quadric {
         return error_of(reach, length(half_gradient(local<Real>(point))));
     }
 
-    // The passage of rays through the quadric; those that `start` on it know their other end by algebra, and by
-    // `inside` whether they are inside it until there.
-    void pass(const Rays<Real>& rays, Mask<Real> start, Mask<Real> inside, Passage<Real>& passage) const {
-        pass(equation_along(rays), rays, start, inside, passage);
+    // The passage of rays through the quadric; those that start on it are inside it or not, as `start` knows.
+    void pass(const Rays<Real>& rays, const Start<Real>& start, const Side* side, Passage<Real>& passage) const {
+        pass(equation_along(rays), rays, start.on(*side), start.within(*side), passage);
     }
 
     template <bool which_primitive>
@@ -56,7 +56,7 @@ class Quadric {
 
     // Rays that start on the surface by the roundings of their origins only, and not by knowledge, do not meet it
     // there.
-    bool intersect_by_rules(const Rays<Real>& rays, Crossing<Real>& crossing) const {
+    [[gnu::noinline]] bool intersect_by_rules(const Rays<Real>& rays, Crossing<Real>& crossing) const {
         if (!intersect(rays, crossing)) {
             return false;
         }
@@ -77,7 +77,7 @@ class Quadric {
 
     int primitive_met(const Rays<Real>&, int, int primitive, Real, bool) const { return primitive; }
 
-    Vector<Real> outward_at(int, const Vector<Real>& point) const {
+    [[gnu::noinline]] Vector<Real> outward_at(int, const Vector<Real>& point) const {
         return normalize(to_space(half_gradient(local<Real>(point))));
     }
 
@@ -112,7 +112,8 @@ class Quadric {
         const Vector<Real> gradient = half_gradient(local<Real>(vector_of<Real>(point)));
         const Real size = length(gradient);
         if (size > 0) {
-            visit(Contact<Real>{object_, primitive_, to_space(gradient) / size, most_bend_ / size, false, true});
+            visit(Contact<Real>{object_, primitive_, to_space(gradient) / size, most_bend_ / size, false, true,
+                                primitive_});
         }
     }
 
@@ -303,6 +304,9 @@ class Quadric {
     Real reach2_;  // the square of the radius of a ball about the centre that holds the surface, or infinite
     int object_, primitive_;
 };
+
+extern template class Quadric<float>;  // in shapes.cpp
+extern template class Quadric<double>;
 
 template <typename Real>
 class QuadricSight : public BallInSight<Real> {

@@ -8,6 +8,7 @@
 #include "shapes/contact.h"
 #include "shapes/crossing.h"
 #include "shapes/sight.h"
+#include "shapes/start.h"
 #include "tracing/camera.h"
 #include "tracing/description.h"
 #include "tracing/incidence.h"
@@ -50,8 +51,6 @@ class Sphere {
     // Intersection", Ray Tracing Gems, 2019, ch. 7.
     template <bool which_primitive>
     [[gnu::always_inline]] bool intersect(const Rays<Real>& rays, Crossing<Real>& crossing, Mask<Real>&) const {
-        const L zero = Real(0);
-
         const Vector<L> g = Vector<L>(center_) - rays.origin;
         const L closest = dot(g, rays.direction);  // where the ray passes the centre
         const Vector<L> across = g - closest * rays.direction;
@@ -66,25 +65,20 @@ class Sphere {
             return false;
         }
 
-        const L radius = radius_;
-        const L radius2 = radius * radius;
-        const L discriminant = radius2 - across2;
-        // A ray that touches the sphere passes it by.
-        const L touching =
-            min(L(diameter_) * (rays.t_min + abs(closest) * rays.spread) + L(touching_), L(most_touching_));
-        const L root = sqrt(max(discriminant, zero));
-        const L q = closest + select(closest >= zero, root, -root);
-        const L other = (dot(g, g) - radius2) / q;
-        Passage<Real> passage{min(q, other), max(q, other), primitive_, primitive_, ~(discriminant > touching)};
-        const Mask<Real> from_within = starts_here & rays.inside;
-        if (any(starts_here)) {
-            // With the origin on the sphere, the roots are 0 and 2 g.d, and only the second, from within, is a hit.
-            const L through = closest + closest;
-            passage.far = select(from_within, through, passage.far);
-            passage.misses = select(starts_here, left_outward | (through <= zero), passage.misses);
-        }
-        crossing = first_crossing(passage, rays, from_within);
+        Passage<Real> passage;
+        pass(g, closest, across2, rays, starts_here, rays.inside, passage);
+        crossing = first_crossing(passage, rays, starts_here & rays.inside);
         return true;
+    }
+
+    // The passage of rays through the sphere; those that start on it are inside it or not, as `start` knows.
+    void pass(const Rays<Real>& rays, const Start<Real>& start, const Side* side, Passage<Real>& passage) const {
+        const Vector<L> g = Vector<L>(center_) - rays.origin;
+        const L closest = dot(g, rays.direction);
+        const Vector<L> across = g - closest * rays.direction;
+        const Mask<Real> here = start.on(*side);
+        pass(g, closest, dot(across, across), rays, here, start.within(*side), passage);
+        passage.near = select(here, L(-std::numeric_limits<Real>::infinity()), passage.near);
     }
 
     // Rays that start on the sphere by the roundings of their origins only, and not by knowledge, do not meet it there.
@@ -128,12 +122,37 @@ class Sphere {
     void for_each_contact(const SphereDescription& sphere, const Triple& point, Visit visit) const {
         if (lies_on(sphere, point)) {
             const Vector<Real> arm = vector_of<Real>(in_range(direction(sphere.center, point)));
-            visit(Contact<Real>{object_, primitive_, normalize(arm), 1 / radius_, false, true});
+            visit(Contact<Real>{object_, primitive_, normalize(arm), 1 / radius_, false, true, primitive_});
         }
     }
 
  private:
     friend class SphereSight<Real>;
+
+    [[gnu::always_inline]] void pass(const Vector<L>& g, L closest, L across2, const Rays<Real>& rays,
+                                     Mask<Real> starts_here, Mask<Real> inside, Passage<Real>& passage) const {
+        const L zero = Real(0);
+        const L radius = radius_;
+        const L radius2 = radius * radius;
+        const L discriminant = radius2 - across2;
+        // A ray that touches the sphere passes it by.
+        const L touching =
+            min(L(diameter_) * (rays.t_min + abs(closest) * rays.spread) + L(touching_), L(most_touching_));
+        const L root = sqrt(max(discriminant, zero));
+        const L q = closest + select(closest >= zero, root, -root);
+        const L other = (dot(g, g) - radius2) / q;
+        passage.near = min(q, other);
+        passage.far = max(q, other);
+        passage.near_primitive = primitive_;
+        passage.far_primitive = primitive_;
+        passage.misses = ~(discriminant > touching);
+        if (any(starts_here)) {
+            // With the origin on the sphere, the roots are 0 and 2 g.d, and only the second, from within, is a hit.
+            const L through = closest + closest;
+            passage.far = select(starts_here & inside, through, passage.far);
+            passage.misses = select(starts_here, ~inside | (through <= zero), passage.misses);
+        }
+    }
 
     Vector<Real> center_;
     Real radius_;

@@ -351,9 +351,10 @@ void Scene<Real>::add_eye(const SceneDescription& description) {
         if (eye_contact.object < 0 && contact.on_body) {
             eye_contact.object = contact.object;
             eye_contact.primitive = contact.primitive;
+            eye_contact.body = contact.body;
             eye_contact.curvature = contact.curvature;
         }
-        if (contact.object == eye_contact.object) {
+        if (contact.body >= 0 && contact.body == eye_contact.body) {
             eye_contact.outward.push_back(contact.outward);
         }
     }
