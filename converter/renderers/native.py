@@ -139,10 +139,11 @@ def build_scene(scene: Scene, needs: SceneNeeds) -> Any:
 
 
 def _restore_planes(rays: "list[RayRecord]", needs: SceneNeeds) -> None:
-    """Turn the tracer's plane numbers, which skip the planes that have no face, into the scene's."""
+    """Turn the tracer's plane numbers, which skip the planes that have no face, into the scene's; a csg has none."""
     pending = list(rays)
     while pending:
         ray = pending.pop()
         pending.extend(ray.children)
         if ray.hit is not None and ray.hit.plane is not None:
-            ray.hit.plane = needs.planes[ray.hit.object][ray.hit.plane]
+            planes = needs.planes[ray.hit.object]
+            ray.hit.plane = planes[ray.hit.plane] if planes else None

@@ -31,7 +31,7 @@ class Facts(NamedTuple):
     drawn: bool = True
     """Whether a ray may hit it. Of what is nothing the others say little."""
     planes: tuple[int, ...] = ()
-    """Which of its planes have a face, ascending; all of them where it is nothing."""
+    """Which of its planes have a face, ascending; all of them where it is nothing, and none of a csg's."""
     plate: tuple[int, ...] = ()
     """The two planes between which it is a plate without thickness; for others none."""
     conflict: tuple[int, ...] = ()

@@ -72,7 +72,7 @@ class MeshSurfaces(ExactSurfaces):
                 accepted &= ~self.contacts.lies_at(light, crossing, ray.d, accepted)
             t = dr.select(accepted, t_exact, t)
             found = dr.select(accepted, index, found)
-            primitive = dr.select(accepted, index_primitive, primitive)
+            primitive = dr.select(accepted, crossing.primitive, primitive)
             # Step over what may not be met. Steps double, so that they get out of any rounding error in a few; where
             # they start from nothing (at the origin, from the eye) they cannot, and end.
             steps += 1

@@ -65,7 +65,17 @@ class Primitives:
         return _by_kind(self._solids, self._solid, index, active, intersect)
 
     def intersect_one(self, ray: Ray, index: Any, primitive: Any, active: Any, reach: Any) -> Crossing:
-        """Where each ray crosses one primitive of an object, the others left away."""
+        """Where each ray crosses one primitive of an object, the others left away; of a csg none is."""
+        if self.any_csg:
+            whole = mi.Bool(False)
+            for k, solid in enumerate(self._solids):
+                if isinstance(solid, Csg):
+                    whole |= dr.gather(mi.UInt32, self._solid, index, active) == k
+            crossing = self.intersect(ray, index, active & whole, reach)
+            return dr.select(whole, crossing, self._intersect_alone(ray, index, primitive, active & ~whole, reach))
+        return self._intersect_alone(ray, index, primitive, active, reach)
+
+    def _intersect_alone(self, ray: Ray, index: Any, primitive: Any, active: Any, reach: Any) -> Crossing:
         own = ray.object == index
 
         def intersect(kind: ShapeKind, active: Any) -> Crossing:
