@@ -18,6 +18,7 @@ discriminant taken where the ray is nearest.
 """
 
 import math
+import sys
 from dataclasses import dataclass
 from fractions import Fraction
 from typing import Any
@@ -95,9 +96,9 @@ def _rows(numbers: list[float]) -> list[Row]:
     given = _form(numbers)
     m = _anchor(given)
     form = given.about(list(map(Fraction, m)))
-    q, g, k = [[*map(float, row)] for row in form.matrix], [*map(float, form.g)], float(form.k)
+    q, g, k = [[*map(_float, row)] for row in form.matrix], [*map(_float, form.g)], _float(form.k)
     # Decimals that were rounded, and what is rounded here and in the kernel.
-    errors = [float(_scale(numbers) * Fraction(input_error(x)) * 2**52) for x in numbers]
+    errors = [_float(_scale(numbers) * Fraction(input_error(x)) * 2**52) for x in numbers]
     far = max(map(abs, m))
     e2, e1, e0 = sum(errors[:6]), sum(errors[6:9]), errors[9]
     e0 += far * (e1 + far * e2) + abs(k)
@@ -113,11 +114,11 @@ def _rows(numbers: list[float]) -> list[Row]:
 
 def _anchor(form: _Form) -> tuple[float, float, float]:
     """The centre, or along axes on which there is none, or only far away, the point nearest the scene's origin."""
-    matrix = np.array([[float(x) for x in row] for row in form.matrix])
+    matrix = np.array([[_float(x) for x in row] for row in form.matrix])
     bends, axes = np.linalg.eigh(matrix)
-    m, constant = np.zeros(3), float(form.k)
+    m, constant = np.zeros(3), _float(form.k)
     for bend, axis in sorted(zip(bends.tolist(), axes.T, strict=True), key=lambda pair: -abs(pair[0])):
-        slope = float(axis @ np.array([float(x) for x in form.g]))
+        slope = float(axis @ np.array([_float(x) for x in form.g]))
         if abs(bend) <= 1e-15 * np.abs(bends).max():
             continue
         at_center = constant - slope * slope / bend
@@ -126,6 +127,12 @@ def _anchor(form: _Form) -> tuple[float, float, float]:
             constant = at_center
     x, y, z = m.tolist()
     return x, y, z
+
+
+def _float(x: Fraction) -> float:
+    """The nearest double; the largest where there is none."""
+    largest = Fraction(sys.float_info.max)
+    return float(min(max(x, -largest), largest))
 
 
 def _contact(point: Any, numbers: Any, k: int) -> Contact | None:
