@@ -298,6 +298,17 @@ def test_a_body_is_what_it_is_however_it_is_said(pair, precision):
     assert one == other
 
 
+def test_precisions_agree_on_what_is_met_at_edges():
+    """Rays from a round place meet the edges of a box exactly: the first of its planes is seen, as of any box."""
+
+    def add(scene, pigment, finish):
+        scene.set_camera((-1, 0.5, 7), (0, 0, 0), (0, 1, 0), 45)
+        carved = [("polyhedron", box((-0.5, -0.5, -1), (1.5, 2, 2))), ("sphere", (2, 2, -0.5, 1.5))]
+        scene.add_csg(pigment, finish, carved, [A, B, SUBTRACT])
+
+    assert differing(pixels(add), pixels(add, precision="long double")) == 0
+
+
 @pytest.mark.parametrize("scale", [1e-6, 1e-3, 1e3, 1e6])
 @pytest.mark.parametrize("pair", ["A - A", "A - A, a box", "A - A, a cone"])
 def test_nothing_is_left_at_any_scale(pair, scale):

@@ -254,6 +254,20 @@ def test_one_root_is_exact_where_there_is_only_one(precision):
     assert (plane["hit"]["t"], plane["hit"]["normal"]) == (2, (0, 0, 1))
 
 
+@pytest.mark.parametrize("precision", ["double", "long double"])
+def test_a_ray_along_a_ruling_does_not_meet_the_surface_far_away(precision):
+    """But for the roundings of its direction it runs along the straight lines in the cylinder, inside it for ever."""
+    for kind, direction in (("parabolic cylinder", (1e-17, 1, 0.5)), ("cylinder", (1e-17, 0, 1))):
+        inside = trace_ray(scene_of(KINDS[kind]), (0.5, 0.75, 0.25), direction, precision=precision)
+        assert inside["hit"] is None, kind
+    glass = scene_of(KINDS["parabolic cylinder"], kt=1)
+    first, second = chain(trace_ray(glass, (0.5, -3, -1), (1e-17, 1, 0.5), precision=precision, max_depth=1))
+    assert first["hit"]
+    assert second["hit"] is None
+    across = trace_ray(scene_of(KINDS["parabolic cylinder"]), (0.5, 3, 0.25), (1, 0, 0), precision=precision)
+    assert across["hit"]
+
+
 def test_a_ray_along_a_cones_side_beside_it_hits_once():
     ray = trace_ray(scene_of(KINDS["cone"]), (-3, 0, -1), (0.6, 0, 0.8), precision="double")
     assert ray["hit"] is not None

@@ -108,13 +108,14 @@ class ConvexPolyhedron {
     }
 
     // The passage of rays through the polyhedron; of those that start on a plane `start` knows the side, on which they
-    // stay.
-    void pass(const Rays<Real>& rays, const Start<Real>& start, const Side* sides, Passage<Real>& passage) const {
+    // stay. Returns the least distance between two planes that rays meet one after the other.
+    L pass(const Rays<Real>& rays, const Start<Real>& start, const Side* sides, Passage<Real>& passage) const {
         const L zero = Real(0);
         passage.misses = Mask<Real>::none();
         passage.near_primitive = first_primitive_;
         passage.far_primitive = first_primitive_;
         Mask<Real> from_within = Mask<Real>::none();
+        L between_planes = std::numeric_limits<Real>::infinity();
         for (int k = 0; k < plane_count(); ++k) {
             const Plane<Real>& plane = planes_[static_cast<std::size_t>(k)];
             const Vector<L> normal(plane.normal);
@@ -125,6 +126,7 @@ class ConvexPolyhedron {
             const Mask<Real> entering = slope < zero;
             Mask<Real> leaves_first = ~entering & (t < passage.far);
             Mask<Real> enters_last = entering & (t > passage.near);
+            between_planes = min(abs(t - select(entering, passage.near, passage.far)), between_planes);
             const Mask<Real> along = abs(slope) <= rays.spread;
             if (decides_ties<Real> && any(along)) [[unlikely]] {
                 const L error = rays.t_min + error_of(first_primitive_ + k, rays.reach);
@@ -150,6 +152,7 @@ class ConvexPolyhedron {
         }
         passage.near = select(from_within, L(-std::numeric_limits<Real>::infinity()), passage.near);
         passage.misses |= passage.near > passage.far;
+        return between_planes;
     }
 
     // A ray along a plane neither enters nor leaves there, and is inside or outside by its height; one that meets an

@@ -130,6 +130,7 @@ class Csg {
         L near, far;
         Indices<Real> near_primitive, far_primitive;
         Mask<Real> inverted;
+        L between_primitives;  // the least distance between two of the leaf's own
     };
 
     // The passages through the leaves that some ray may meet, by the order of the leaves.
@@ -296,8 +297,8 @@ class Csg {
             }
             const Leaf& leaf = leaves_[i];
             Passage<Real> passage;
-            lists_.visit(leaf.shape, [&](const auto& shape) {
-                shape.pass(rays, start, sides_.data() + leaf.first_piece, passage);
+            const L between = lists_.visit(leaf.shape, [&](const auto& shape) {
+                return shape.pass(rays, start, sides_.data() + leaf.first_piece, passage);
             });
             const Mask<Real> meets = ~passage.misses;
             if (start.any) {
@@ -313,8 +314,11 @@ class Csg {
             }
             passages.place[i] = passages.count;
             passages.ends[passages.count++] = {select(meets, passage.near, infinity),
-                                               select(meets, passage.far, infinity), passage.near_primitive,
-                                               passage.far_primitive, passage.inverted};
+                                               select(meets, passage.far, infinity),
+                                               passage.near_primitive,
+                                               passage.far_primitive,
+                                               passage.inverted,
+                                               between};
         }
     }
 
@@ -344,8 +348,9 @@ class Csg {
 
     // Out of line, for others' sake: it is long.
     [[gnu::noinline]] bool intersect(const Rays<Real>& rays, Crossing<Real>& crossing) const {
+        const Start<Real> start = start_of(rays);
         Passages passages;
-        pass_leaves(rays, start_of(rays), passages);
+        pass_leaves(rays, start, passages);
         if (passages.count == 0) {
             return false;
         }
@@ -373,12 +378,13 @@ class Csg {
         if (!any(crossing.t < infinity)) {
             return false;
         }
-        find_primitives(rays, passages, crossing);
+        find_primitives(rays, start, passages, crossing);
         return true;
     }
 
     // The primitives met at the crossings, those of the first leaves that are met there.
-    void find_primitives(const Rays<Real>& rays, const Passages& passages, Crossing<Real>& crossing) const {
+    void find_primitives(const Rays<Real>& rays, const Start<Real>& start, const Passages& passages,
+                         Crossing<Real>& crossing) const {
         const L range = L(most_blur<Real>) * (rays.reach + crossing.t);
         const Indices<Real> other_side = pieces_;
         const Indices<Real> same_side = 0;
@@ -390,7 +396,7 @@ class Csg {
             const auto meet = [&](const L& t, const Indices<Real>& primitive, Mask<Real> enters) {
                 const Mask<Real> here = abs(t - crossing.t) <= range;
                 const Mask<Real> first = (t <= crossing.t) & (t >= crossing.t) & ~found;
-                close |= here & ~first;
+                close |= (here & ~first) | (first & (ends.between_primitives < range));
                 crossing.primitive = select(first, primitive + select(enters ^ crossing.inside, same_side, other_side),
                                             crossing.primitive);
                 found |= first;
@@ -400,7 +406,7 @@ class Csg {
         }
         close &= crossing.t < L(std::numeric_limits<Real>::infinity());
         for (unsigned lanes = close.bits(); lanes != 0; lanes &= lanes - 1) [[unlikely]] {
-            settle(rays, std::countr_zero(lanes), passages, crossing);
+            settle(rays, start, std::countr_zero(lanes), passages, crossing);
         }
     }
 
@@ -415,7 +421,7 @@ class Csg {
 
     // Decides for one ray between places that are the same but for rounding errors. All that happens there happens at
     // once: a film that is no thicker than the errors is none.
-    [[gnu::noinline]] void settle(const Rays<Real>& rays, int lane, const Passages& passages,
+    [[gnu::noinline]] void settle(const Rays<Real>& rays, const Start<Real>& start, int lane, const Passages& passages,
                                   Crossing<Real>& crossing) const {
         Event events[2 * most_csg_leaves];
         int count = 0;
@@ -469,10 +475,9 @@ class Csg {
             if (value(after) != before) {
                 const Event& met = *first_met(events + first, events + end, inside, after);
                 crossing.t = replaced(crossing.t, lane, t);
-                crossing.primitive = Indices<Real>::gather([&](int other) {
-                    return other != lane ? crossing.primitive[other]
-                                         : met.primitive + (met.enters != before ? 0 : pieces_);
-                });
+                const int primitive = first_of_leaf(rays, start, lane, met) + (met.enters != before ? 0 : pieces_);
+                crossing.primitive = Indices<Real>::gather(
+                    [&](int other) { return other == lane ? primitive : crossing.primitive[other]; });
                 crossing.inside =
                     Mask<Real>::gather([&](int other) { return other != lane ? crossing.inside[other] : before; });
                 return;
@@ -480,6 +485,17 @@ class Csg {
             inside = after;
             first = end;
         }
+    }
+
+    // Of the leaf's primitives that a ray meets there, the first.
+    int first_of_leaf(const Rays<Real>& rays, const Start<Real>& start, int lane, const Event& event) const {
+        Rays<Real> unturned = rays;
+        if (start.any) {
+            unturned.primitive = start.primitive;
+        }
+        return lists_.visit(leaves_[static_cast<std::size_t>(event.leaf)].shape, [&](const auto& leaf) {
+            return leaf.primitive_met(unturned, lane, event.primitive, event.t, !event.enters);
+        });
     }
 
     static L replaced(const L& lanes, int lane, Real value) {

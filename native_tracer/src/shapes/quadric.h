@@ -45,8 +45,9 @@ class Quadric {
     }
 
     // The passage of rays through the quadric; those that start on it are inside it or not, as `start` knows.
-    void pass(const Rays<Real>& rays, const Start<Real>& start, const Side* side, Passage<Real>& passage) const {
+    L pass(const Rays<Real>& rays, const Start<Real>& start, const Side* side, Passage<Real>& passage) const {
         pass(equation_along(rays), rays, start.on(*side), start.within(*side), passage);
+        return std::numeric_limits<Real>::infinity();
     }
 
     template <bool which_primitive>
@@ -271,6 +272,30 @@ class Quadric {
             passage.misses = select(start, ~leads_through, passage.misses);
             passage.inverted = select(start & passage.misses, inside, passage.inverted);
         }
+        if constexpr (decides_ties<Real>) {
+            pass_along(equation, rays, select(start, abs(b), root), passage);
+        }
+    }
+
+    // Where a ray runs along the surface, but for the error of its direction, it does not meet it: along the straight
+    // lines in a cylinder, or a paraboloid's axis, the roots of an equation that is linear but for roundings are too
+    // far away to be any. At both roots the gradient's product with the direction is `slope`.
+    [[gnu::always_inline]] void pass_along(const Equation& equation, const Rays<Real>& rays, L slope,
+                                           Passage<Real>& passage) const {
+        const L infinity = std::numeric_limits<Real>::infinity();
+        const L at_origin = max_norm(equation.half_gradient);
+        const auto moved_away = [&](L t) {
+            const L gradient = at_origin + abs(t) * L(most_bend_);  // it is no longer than twice that
+            const Mask<Real> doubtful = (slope <= L(2) * rays.spread * gradient) & (gradient < infinity);
+            if (!any(doubtful)) [[likely]] {
+                return t;
+            }
+            const Vector<L> there = equation.half_gradient + t * equation.bent_direction;
+            const Mask<Real> along = doubtful & ~(slope > rays.spread * length(there));
+            return select(along, select(t < L(Real(0)), -infinity, infinity), t);
+        };
+        passage.near = moved_away(passage.near);
+        passage.far = moved_away(passage.far);
     }
 
     // A ray that touches the quadric, but for its errors, passes it by.

@@ -17,7 +17,8 @@
 //     error_at                  how far a primitive may be off near a point, where rays of that reach are compared with
 //                               it, see Rays
 //     for_each_contact          the primitives that a point lies on
-//     pass                      if it may be a leaf of csg, the passage of rays, of which it is known where they start
+//     pass                      if it may be a leaf of csg, the passage of rays, of which it is known where they start;
+//                               returns the least distance between primitives that tie if it is small
 //     Sight                     the shape as seen from one point, which tells rays through the point that miss it:
 //                               may_be_hit by rays from the point; may_block rays that lead to it
 //

@@ -72,13 +72,14 @@ class Sphere {
     }
 
     // The passage of rays through the sphere; those that start on it are inside it or not, as `start` knows.
-    void pass(const Rays<Real>& rays, const Start<Real>& start, const Side* side, Passage<Real>& passage) const {
+    L pass(const Rays<Real>& rays, const Start<Real>& start, const Side* side, Passage<Real>& passage) const {
         const Vector<L> g = Vector<L>(center_) - rays.origin;
         const L closest = dot(g, rays.direction);
         const Vector<L> across = g - closest * rays.direction;
         const Mask<Real> here = start.on(*side);
         pass(g, closest, dot(across, across), rays, here, start.within(*side), passage);
         passage.near = select(here, L(-std::numeric_limits<Real>::infinity()), passage.near);
+        return std::numeric_limits<Real>::infinity();
     }
 
     // Rays that start on the sphere by the roundings of their origins only, and not by knowledge, do not meet it there.
