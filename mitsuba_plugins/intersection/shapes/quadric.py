@@ -262,9 +262,8 @@ def _line(quadric: _Quadric, ray: Ray) -> _Line:
 
 def _most_touching(quadric: _Quadric, line: _Line, reach: Any) -> Any:
     """The discriminant of rays that are near to touching; the gradient is 0 at a cone's tip, and small near by."""
-    blur = most_blur(reach)
-    near_tip = blur * dr.square(quadric.bend() * (reach + dr.abs(line.middle)))
-    return blur * (dr.squared_norm(line.half_gradient) + near_tip)
+    near_tip = 16 * epsilon(reach) * dr.square(quadric.bend() * (reach + dr.abs(line.middle)))
+    return most_blur(reach) * dr.squared_norm(line.half_gradient) + near_tip
 
 
 def passage(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
