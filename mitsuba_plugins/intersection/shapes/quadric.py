@@ -253,7 +253,7 @@ def _line(quadric: _Quadric, ray: Ray) -> _Line:
     # Where the quadric along the ray is stationary, if that is not far away, as for a ray that is nearly parallel to a
     # cone's side; else where the ray is nearest to the anchor.
     stationary = -quotient(start_b, a)
-    middle = dr.select(dr.abs(stationary) <= 4 * largest(start), stationary, -dr.dot(start, ray.d))
+    middle = dr.select(dr.abs(stationary) <= 16 * largest(start), stationary, -dr.dot(start, ray.d))
     q = vector(start + middle * ray.d)
     half_gradient = quadric.times(q) + quadric.g
     b = dr.dot(ray.d, half_gradient)
@@ -262,7 +262,7 @@ def _line(quadric: _Quadric, ray: Ray) -> _Line:
 
 def _most_touching(quadric: _Quadric, line: _Line, reach: Any) -> Any:
     """The discriminant of rays that are near to touching; the gradient is 0 at a cone's tip, and small near by."""
-    near_tip = 16 * epsilon(reach) * dr.square(quadric.bend() * (reach + dr.abs(line.middle)))
+    near_tip = epsilon(reach) * dr.square(quadric.bend() * (reach + dr.abs(line.middle)))
     return most_blur(reach) * dr.squared_norm(line.half_gradient) + near_tip
 
 
