@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "search/bounds.h"
+#include "shapes/csg_plan.h"
 
 namespace whitted {
 
@@ -70,11 +71,8 @@ struct Boxes {
 
 }  // namespace
 
-LeafTree::~LeafTree() = default;
-
-LeafTree build_leaf_tree(const CsgDescription& csg, int digits) {
+void add_leaf_tree(const CsgDescription& csg, int digits, CsgPlan& plan) {
     constexpr std::size_t fewest = 6;
-    LeafTree result;
     Boxes boxes;
     const double epsilon =
         digits < std::numeric_limits<double>::digits ? epsilon_of(Precision::single) : epsilon_of(Precision::normal);
@@ -83,13 +81,12 @@ LeafTree build_leaf_tree(const CsgDescription& csg, int digits) {
             csg.leaves.size() < fewest ? std::nullopt
                                        : std::visit([](const auto& leaf) { return bounds_of(leaf); }, csg.leaves[i]);
         if (!boxes.add(static_cast<std::uint32_t>(i), found, epsilon)) {
-            result.apart.push_back(static_cast<int>(i));
+            plan.apart.push_back(static_cast<int>(i));
         }
     }
-    result.growth = boxes.growth;
-    result.reach = boxes.reach;
-    result.bvh = boxes.tree(2);
-    return result;
+    plan.growth = boxes.growth;
+    plan.reach = boxes.reach;
+    plan.tree = boxes.tree(2);
 }
 
 SearchPlan plan_search(const SceneDescription& scene, Search search, Precision precision) {

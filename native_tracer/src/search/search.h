@@ -19,17 +19,9 @@ struct SearchPlan {
     double reach = 0;  // no coordinate in the tree is larger, nor any plane that bounds its objects farther away
 };
 
-// A tree over the boxes of a csg's leaves.
-struct LeafTree {
-    Bvh bvh;                 // its items are leaves; none where they are few
-    std::vector<int> apart;  // leaves outside it
-    double growth = 1, reach = 0;
-
-    ~LeafTree();  // not where it is used: kernels must offer no functions to one another, see isa.h
-};
-
-// For numbers with so many digits, in bits.
-LeafTree build_leaf_tree(const CsgDescription& csg, int digits);
+// Adds a tree over the boxes of a csg's leaves to its plan, where they are many; for numbers with so many digits.
+struct CsgPlan;
+void add_leaf_tree(const CsgDescription& csg, int digits, CsgPlan& plan);
 
 SearchPlan plan_search(const SceneDescription& scene, Search search, Precision precision);
 

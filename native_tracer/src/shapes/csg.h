@@ -20,10 +20,10 @@
 #include <vector>
 
 #include "search/bounds.h"
-#include "search/search.h"
 #include "shapes/contact.h"
 #include "shapes/convex_polyhedron.h"
 #include "shapes/crossing.h"
+#include "shapes/csg_plan.h"
 #include "shapes/quadric.h"
 #include "shapes/shape_lists.h"
 #include "shapes/sight.h"
@@ -51,16 +51,21 @@ class Csg {
     static int primitive_count(const CsgDescription& csg) { return 2 * piece_count(csg); }
 
     [[gnu::noinline]] Csg(const CsgDescription& csg, int object, int first_primitive)
-        : program_(csg.program), pieces_(piece_count(csg)), object_(object), first_primitive_(first_primitive) {
-        for (const LeafDescription& leaf : csg.leaves) {
-            const int first = static_cast<int>(leaf_of_piece_.size());
-            const int count = Leaves::primitive_count(leaf);
-            leaf_of_piece_.insert(leaf_of_piece_.end(), static_cast<std::size_t>(count),
-                                  static_cast<int>(leaves_.size()));
-            leaves_.push_back({lists_.add(leaf, object, first_primitive + first), first, first + count});
+        : plan_(plan_csg(csg, std::numeric_limits<Real>::digits)),
+          pieces_(plan_.first_piece.back()),
+          object_(object),
+          first_primitive_(first_primitive) {
+        for (std::size_t i = 0; i < csg.leaves.size(); ++i) {
+            const int first = plan_.first_piece[i];
+            leaves_.push_back(
+                {lists_.add(csg.leaves[i], object, first_primitive + first), first, plan_.first_piece[i + 1]});
         }
-        find_sides(csg);
-        find_boxes(csg);
+        find_ball(csg);
+        for (const BvhNode& node : plan_.tree.nodes) {
+            nodes_.push_back({vector_of<Real>(node.box.low), vector_of<Real>(node.box.high),
+                              static_cast<int>(node.children), static_cast<int>(node.first),
+                              static_cast<int>(node.first + node.count)});
+        }
     }
 
     int object() const { return object_; }
@@ -142,7 +147,7 @@ class Csg {
 
     struct Node {
         Vector<Real> low, high;
-        int children;  // the first of two neighbours; 0: it holds the leaves of `boxed_` from first to end
+        int children;  // the first of two neighbours; 0: it holds the leaves of the tree's order from first to end
         int first, end;
     };
 
@@ -159,57 +164,12 @@ class Csg {
     int piece_of(int primitive) const { return (primitive - first_primitive_) % pieces_; }
     int unturned(int primitive) const { return first_primitive_ + piece_of(primitive); }
     const Leaf& leaf_of(int primitive) const {
-        return leaves_[static_cast<std::size_t>(leaf_of_piece_[static_cast<std::size_t>(piece_of(primitive))])];
-    }
-
-    // Which pieces are of the same surface: those whose numbers are the same, or the same with all signs turned.
-    void find_sides(const CsgDescription& csg) {
-        std::vector<std::vector<Real>> numbers;
-        for (const LeafDescription& leaf : csg.leaves) {
-            if (const auto* sphere = std::get_if<SphereDescription>(&leaf)) {
-                const Vector<Real> center = vector_of<Real>(sphere->center);
-                // A ball is never inside out: the last number keeps its sign.
-                numbers.push_back({center.x, center.y, center.z, static_cast<Real>(sphere->radius), Real(1)});
-            } else if (const auto* quadric = std::get_if<QuadricDescription>(&leaf)) {
-                numbers.emplace_back(quadric->coefficients.begin(), quadric->coefficients.end());
-            } else {
-                for (const Quadruple& plane : std::get_if<PolyhedronDescription>(&leaf)->planes) {
-                    const Plane<Real> unit = plane_of<Real>(plane);
-                    numbers.push_back({unit.normal.x, unit.normal.y, unit.normal.z, unit.offset});
-                }
-            }
-        }
-        for (std::size_t i = 0; i < numbers.size(); ++i) {
-            Side side{static_cast<int>(i), false};
-            for (std::size_t k = 0; k < i; ++k) {
-                if (same(numbers[i], numbers[k], 1)) {
-                    side = sides_[k];
-                } else if (same(numbers[i], numbers[k], -1)) {
-                    side = {sides_[k].surface, !sides_[k].reversed};
-                } else {
-                    continue;
-                }
-                break;
-            }
-            sides_.push_back(side);
-        }
-    }
-
-    static bool same(const std::vector<Real>& a, const std::vector<Real>& b, Real sign) {
-        if (a.size() != b.size()) {
-            return false;
-        }
-        for (std::size_t i = 0; i < a.size(); ++i) {
-            if (a[i] != sign * b[i]) {
-                return false;
-            }
-        }
-        return true;
+        return leaves_[static_cast<std::size_t>(plan_.leaf_of_piece[static_cast<std::size_t>(piece_of(primitive))])];
     }
 
     // ---- Boxes ------------------------------------------------------------------------------------------------------
 
-    void find_boxes(const CsgDescription& csg) {
+    void find_ball(const CsgDescription& csg) {
         reach2_ = std::numeric_limits<Real>::infinity();
         if (const std::optional<Bounds> bounds = bounds_of(csg)) {
             const Vector<Real> low = vector_of<Real>(bounds->box.low);
@@ -220,30 +180,18 @@ class Csg {
             const Real size = length(arm) + blur * (length(arm) + length(ball_center_));
             reach2_ = size * size;
         }
-        LeafTree tree = build_leaf_tree(csg, std::numeric_limits<Real>::digits);
-        growth_ = static_cast<Real>(tree.growth);
-        reach_ = static_cast<Real>(tree.reach);
-        always_ = tree.apart;
-        for (const BvhNode& node : tree.bvh.nodes) {
-            nodes_.push_back({vector_of<Real>(node.box.low), vector_of<Real>(node.box.high),
-                              static_cast<int>(node.children), static_cast<int>(node.first),
-                              static_cast<int>(node.first + node.count)});
-        }
-        for (const std::uint32_t leaf : tree.bvh.order) {
-            boxed_.push_back(static_cast<int>(leaf));
-        }
     }
 
     // The leaves that some ray may meet, a bit each.
     std::uint64_t leaves_met(const Rays<Real>& rays) const {
         std::uint64_t met = 0;
-        for (const int leaf : always_) {
+        for (const int leaf : plan_.apart) {
             met |= std::uint64_t(1) << leaf;
         }
         if (nodes_.empty()) {
             return met;
         }
-        const BoxTest<Real> test(rays, growth_, reach_);
+        const BoxTest<Real> test(rays, static_cast<Real>(plan_.growth), static_cast<Real>(plan_.reach));
         const L infinity = std::numeric_limits<Real>::max();
         int waiting[most_csg_leaves];
         int depth = 0;
@@ -260,7 +208,7 @@ class Csg {
                 continue;
             }
             for (int i = node.first; i < node.end; ++i) {
-                met |= std::uint64_t(1) << boxed_[static_cast<std::size_t>(i)];
+                met |= std::uint64_t(1) << plan_.tree.order[static_cast<std::size_t>(i)];
             }
         }
         return met;
@@ -276,8 +224,9 @@ class Csg {
             const Mask<Real> turned = rays.primitive >= Indices<Real>(first_primitive_ + pieces_);
             start.primitive = select(turned, rays.primitive + Indices<Real>(-pieces_), rays.primitive);
             const auto side_of = [&](int lane) {
-                return start.here[lane] ? sides_[static_cast<std::size_t>(start.primitive[lane] - first_primitive_)]
-                                        : Side{-1, false};
+                return start.here[lane]
+                           ? plan_.sides[static_cast<std::size_t>(start.primitive[lane] - first_primitive_)]
+                           : Side{-1, false};
             };
             start.surface = Indices<Real>::gather([&](int lane) { return side_of(lane).surface; });
             const Mask<Real> reversed = Mask<Real>::gather([&](int lane) { return side_of(lane).reversed; });
@@ -298,7 +247,7 @@ class Csg {
             const Leaf& leaf = leaves_[i];
             Passage<Real> passage;
             const L between = lists_.visit(leaf.shape, [&](const auto& shape) {
-                return shape.pass(rays, start, sides_.data() + leaf.first_piece, passage);
+                return shape.pass(rays, start, plan_.sides.data() + leaf.first_piece, passage);
             });
             const Mask<Real> meets = ~passage.misses;
             if (start.any) {
@@ -326,7 +275,7 @@ class Csg {
     [[gnu::always_inline]] Mask<Real> value_behind(const Passages& passages, L t) const {
         Mask<Real> stack[deepest_csg_stack];
         int size = 0;
-        for (const int step : program_) {
+        for (const int step : plan_.program) {
             if (step >= 0) {
                 const int place = passages.place[step];
                 if (place < 0) {
@@ -526,7 +475,7 @@ class Csg {
     // The expression's value inside these leaves, its stack the bits of a number.
     bool value(std::uint64_t inside) const {
         std::uint64_t stack = 0;
-        for (const int step : program_) {
+        for (const int step : plan_.program) {
             if (step >= 0) {
                 stack = stack << 1 | (inside >> step & 1);
                 continue;
@@ -541,14 +490,10 @@ class Csg {
         return stack != 0;
     }
 
+    CsgPlan plan_;
     Leaves lists_;
     std::vector<Leaf> leaves_;
-    std::vector<int> leaf_of_piece_;
-    std::vector<Side> sides_;  // of the pieces
-    std::vector<int> program_;
-    std::vector<Node> nodes_;          // a tree over the boxes of leaves
-    std::vector<int> boxed_, always_;  // leaves in the order of the tree's, and those outside it
-    Real growth_, reach_;              // see BoxTest
+    std::vector<Node> nodes_;  // the plan's tree
     Vector<Real> ball_center_{0, 0, 0};
     Real reach2_;  // the square of the radius of a ball about that centre which holds all, or infinite
     int pieces_, object_, first_primitive_;

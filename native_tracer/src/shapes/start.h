@@ -2,16 +2,11 @@
 
 #pragma once
 
+#include "shapes/csg_plan.h"
 #include "tracing/ray.h"
 #include "tracing/vector.h"
 
 namespace whitted::WHITTED_ISA {
-
-// The surface that a primitive is a piece of. Primitives that are the same but for their sides have the same surface.
-struct Side {
-    int surface;
-    bool reversed;  // its inner side is the surface's outer one
-};
 
 // The surface that rays start on, and on which side of it they travel.
 template <typename Real>
