@@ -150,11 +150,12 @@ def _limits(quadric: Quadric, around: Sequence[Plane]) -> Iterator[Plane]:
             )
     for k, (low, high) in enumerate(_left(frame.values.tolist(), frame.slope, frame.constant, bounds)):
         axis, middle = frame.axes[:, k], float(frame.axes[:, k] @ frame.origin)
-        room = ROOM * max([abs(x) for x in (low, high, middle) if math.isfinite(x)])
+        room = ROOM * max((abs(x) for x in (low, high, middle) if math.isfinite(x)), default=0.0)
         for sign, end in ((1.0, high + room), (-1.0, -(low - room))):
-            if math.isfinite(end):
-                a, b, c = (sign * axis).tolist()
-                yield (a, b, c, -(end + sign * middle))
+            a, b, c = (sign * axis).tolist()
+            plane = (a, b, c, -(end + sign * middle))
+            if all(map(math.isfinite, plane)):
+                yield plane
 
 
 def _left(

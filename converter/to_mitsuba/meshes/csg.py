@@ -118,7 +118,7 @@ def csg_mesh(program: Program, bounds: Box, view: View, name: str = "csg") -> Qu
     size = max(float(np.abs(solid.vertices).max(initial=0.0)) for solid in solids)
     if not SMALLEST < size < LARGEST:  # of NaN, too
         raise PolyhedronError(f"{name}: single precision, of which meshes are, has no numbers for a size of {size:.3g}")
-    vertices, triangles, owners = _combined(program, solids)
+    vertices, triangles, owners = _combined(program, solids, name)
     parts: list[tuple[Floats, Floats, Integers]] = []
     off = tilt = 0.0
     for k, own in enumerate(pieces):
@@ -167,7 +167,7 @@ def _solid(leaf: Primitive, bounds: Box, view: View, name: str) -> _Solid:
     match leaf:
         case Sphere(center, radius):
             distance = max(float(np.linalg.norm(np.array(view.eye) - center)) - radius, view.near)
-            ball = _unit_ball(max(OFF * view.pixel * distance / radius, FINEST))
+            ball = _unit_ball(max(FINEST, OFF * view.pixel * distance / radius))
             return _Solid(ball[0] * radius + center, ball[1], np.zeros(len(ball[1]), dtype=np.int64))
         case Quadric():
             solid = quadric_solid(leaf, outer, view)
@@ -199,9 +199,9 @@ def _polyhedron_solid(planes: Sequence[Sequence[float]], outer: Box, name: str) 
 # ---- All together ----------------------------------------------------------------------------------------------------
 
 
-def _combined(program: Program, solids: Sequence[_Solid]) -> tuple[Floats, Integers, Integers]:
+def _combined(program: Program, solids: Sequence[_Solid], name: str) -> tuple[Floats, Integers, Integers]:
     """Vertices (n, 3), triangles (m, 3), counterclockwise from outside, and each triangle's leaf and surface (m, 2)."""
-    from manifold3d import Manifold, Mesh64
+    from manifold3d import Error, Manifold, Mesh64
 
     every = np.concatenate([solid.vertices for solid in solids])
     middle = (every.min(axis=0) + every.max(axis=0)) / 2
@@ -218,7 +218,10 @@ def _combined(program: Program, solids: Sequence[_Solid]) -> tuple[Floats, Integ
             run_original_id=np.array([first + k], dtype=np.uint32),
             face_id=np.arange(count, dtype=np.uint64),
         )
-        return _Body(Manifold(mesh), solid.complement)
+        inner = Manifold(mesh)
+        if inner.status() != Error.NoError:
+            raise PolyhedronError(f"{name}: the mesh of its leaf {k} closes no body ({inner.status().name})")
+        return _Body(inner, solid.complement)
 
     whole = fold(program.code, body, _boolean)
     mesh = whole.inner.to_mesh64()
