@@ -5,7 +5,7 @@ from fractions import Fraction
 
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from quadrics import FLAWS, SURFACES, quadric, substituted
 
@@ -26,12 +26,14 @@ shifts = st.tuples(*[st.integers(-(10**5), 10**5)] * 3)
 factors = st.sampled_from([1, 3, Fraction(1, 8), 2**200, Fraction(1, 2**200)])
 
 
+@settings(deadline=None)
 @given(st.sampled_from(sorted(SURFACES)), matrices, shifts, factors)
 def test_a_kind_stays_what_it_is_turned_stretched_and_moved(name, matrix, shift, factor):
     numbers = substituted(SURFACES[name], matrix, shift)
     assert kind_of(quadric(factor * x for x in numbers)).name == name
 
 
+@settings(deadline=None)
 @given(st.sampled_from(sorted(FLAWS)), st.integers(0, 7), matrices, shifts)
 def test_so_does_what_has_no_surface(flaw, k, matrix, shift):
     numbers = substituted(FLAWS[flaw][k % len(FLAWS[flaw])], matrix, shift)
@@ -39,6 +41,7 @@ def test_so_does_what_has_no_surface(flaw, k, matrix, shift):
     assert not facts([quadric(numbers)])[0].drawn
 
 
+@settings(deadline=None)
 @given(st.tuples(*[st.integers(-3, 3)] * 10), st.booleans())
 def test_signs_are_those_of_eigenvalues(numbers, hollow):
     """Hollow matrices have no square to begin with."""
@@ -69,6 +72,7 @@ def test_needles_of_any_length_have_bounds_and_paraboloids_do_not(share):
 # ---- Boxes
 
 
+@settings(deadline=None)
 @given(shifts, st.tuples(*[st.integers(1, 60)] * 3))
 def test_a_box_is_exact_where_doubles_hold_it(center, axes):
     squares = [Fraction(1, a * a) for a in axes]
@@ -81,6 +85,7 @@ def test_a_box_is_exact_where_doubles_hold_it(center, axes):
         assert high == tuple(c + a for c, a in zip(center, axes, strict=True))
 
 
+@settings(deadline=None)
 @given(matrices, st.tuples(*[st.integers(-100, 100)] * 3))
 def test_a_box_is_the_smallest_that_holds_the_body(matrix, shift):
     """The half-space beyond a side touches the body in a point at most, and one a little nearer cuts it."""
@@ -112,6 +117,7 @@ def _least_on_plane(numbers, axis, value):
     return p * x * x + q * x * y + r * y * y + s * x + t * y + rest
 
 
+@settings(deadline=None)
 @given(st.fractions(min_value=0, max_value=10**300, max_denominator=10**60))
 def test_a_root_is_not_below_and_hardly_above(x):
     root = root_above(x)
@@ -123,6 +129,7 @@ def test_a_root_is_not_below_and_hardly_above(x):
 # ---- Simpler shapes
 
 
+@settings(deadline=None)
 @given(st.tuples(*[st.integers(-999, 999)] * 3), st.integers(1, 999), st.sampled_from([1, 7, 0.1, 2**-300, 2**300]))
 def test_a_ball_is_drawn_as_a_ball(center, radius, factor):
     x, y, z = center
@@ -135,6 +142,7 @@ def test_a_ball_is_drawn_as_a_ball(center, radius, factor):
     assert simplified(outside := quadric(-factor * n for n in numbers)) == outside
 
 
+@settings(deadline=None)
 @given(st.tuples(whole, whole, whole).filter(any), st.integers(-999, 999), st.integers(1, 999))
 def test_a_slab_is_drawn_as_two_planes(normal, low, width):
     """Between n p = low and n p = low + width, which is (n p - low) (n p - low - width) <= 0."""
@@ -185,6 +193,7 @@ def test_other_kinds_are_simple(kind):
 # ---- Elsewhere
 
 
+@settings(deadline=None)
 @given(st.sampled_from(sorted(SURFACES)), st.tuples(whole, whole, whole), st.tuples(whole, whole, whole))
 def test_moving_is_a_substitution(name, way, point):
     numbers = SURFACES[name]

@@ -12,7 +12,7 @@ from converter.shapes import quadric as kind
 from converter.shapes.quadric_frame import frame_of
 from converter.to_mitsuba.bounds import Box
 from converter.to_mitsuba.meshes.mesh import PolyhedronError
-from converter.to_mitsuba.meshes.quadrics import OFF, View, quadric_mesh, quadric_solid
+from converter.to_mitsuba.meshes.quadrics import COARSER, FAR, OFF, View, quadric_mesh, quadric_solid
 from converter.to_mitsuba.surfaces import shapes
 
 TURNED = {
@@ -92,7 +92,8 @@ def test_triangles_are_as_fine_as_a_pixel_asks_for_and_not_much_finer(shape):
     fine, coarse = mesh_of(shape), mesh_of(shape, view=VIEW._replace(pixel=4 * VIEW.pixel))
     frame = frame_of(shape)
     middle = fine.vertices[fine.triangles].mean(axis=1)
-    allowed = OFF * VIEW.pixel * np.maximum(np.linalg.norm(middle - VIEW.eye, axis=1), VIEW.near)
+    distance = np.maximum(np.linalg.norm(middle - VIEW.eye, axis=1), VIEW.near)
+    allowed = OFF * VIEW.pixel * distance * np.clip(distance / (FAR * VIEW.near), 1, COARSER)
     y = frame.of(middle)
     slope = np.linalg.norm(frame.half_gradient(y), axis=1)
     off = np.abs(frame.at(y)) / (2 * np.maximum(slope, 1e-300))

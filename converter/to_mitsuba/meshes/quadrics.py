@@ -28,7 +28,7 @@ Triangles = NDArray[np.int64]
 
 OFF = 1 / 32
 """How much of a pixel the middle of an edge may be off the surface."""
-MOST_TRIANGLES = 1 << 19
+MOST_TRIANGLES = 1 << 20
 """Of one mesh, about: what asks for more stays coarser."""
 AROUND, STEP = 16, 0.5
 """Coarse meshes: corners around an axis, and steps along hyperbolas, in units of their hyperbolic angle."""
@@ -41,6 +41,8 @@ ROUNDING = 2.0**-44
 FAR = 16.0
 """What is told of how far a mesh is off holds as far as this many times `View.near`, twice as far as what is looked at:
 rays start off their surfaces by as much, which must not be more than a share of a pixel."""
+COARSER = 4.0
+"""How much more may be off, beyond that."""
 STRETCH = 2.0
 """How long an edge may be next to its distance from the eye: what one pixel allows must not vary much along it."""
 
@@ -383,7 +385,8 @@ def _halves(frame: Frame, ends: Floats, eye: Floats, view: View) -> tuple[NDArra
     distance = np.maximum(_to_segments(eye, ends), view.near)
     off = np.linalg.norm(placed - middle, axis=1) - ROUNDING * np.abs(middle).max(axis=1)
     length = np.linalg.norm(ends[:, 1] - ends[:, 0], axis=1)
-    return (off > OFF * view.pixel * distance) | (length > STRETCH * distance), placed
+    share = OFF * np.clip(distance / (FAR * view.near), 1.0, COARSER)
+    return (off > share * view.pixel * distance) | (length > STRETCH * distance), placed
 
 
 def _to_segments(eye: Floats, ends: Floats) -> Floats:
