@@ -25,7 +25,7 @@ from converter.shapes.kind import Intersection, tie_margin
 from converter.studies.families.scenes import box
 
 SCENES = sorted((Path(__file__).parent.parent / "scenes").glob("*.in"))
-# The margins of a csg do not know how far its mesh is off where leaves meet.
+# The margins of a csg do not know how far it is off where leaves meet.
 PRIMITIVES_ONLY = [file for file in SCENES if " csg " not in file.read_text(encoding="utf-8")]
 SETTINGS = Settings(width=400, height=300)
 NATIVE, FLOAT = METHODS["native"], METHODS["native-float"]
@@ -110,9 +110,8 @@ def explained(scene, picture, method, other=None, most=256):
     return explain(scene, (picture, drawn), (SETTINGS, settings), traces, arithmetic, most)
 
 
-@pytest.mark.parametrize("name", ["mitsuba", "native-float"])
 @pytest.mark.parametrize("file", SCENES, ids=lambda file: file.stem)
-def test_every_disagreeing_pixel_of_the_gallery_is_explained(mi, file, name):
+def test_every_disagreeing_pixel_of_the_gallery_is_explained(mi, file, name="mitsuba"):
     scene, picture = reference(file)
     explanation = explained(scene, picture, METHODS[name])
     assert len(explanation.pixels) == explanation.disagreeing < 256
@@ -120,8 +119,9 @@ def test_every_disagreeing_pixel_of_the_gallery_is_explained(mi, file, name):
 
 
 @pytest.mark.parametrize("file", PRIMITIVES_ONLY, ids=lambda file: file.stem)
-def test_every_disagreeing_pixel_of_meshes_is_explained(mi, file):
-    test_every_disagreeing_pixel_of_the_gallery_is_explained(mi, file, "mitsuba-mesh")
+@pytest.mark.parametrize("name", ["mitsuba-mesh", "native-float"])
+def test_every_disagreeing_pixel_of_primitives_is_explained(mi, file, name):
+    test_every_disagreeing_pixel_of_the_gallery_is_explained(mi, file, name)
 
 
 @pytest.mark.parametrize("name", ["mitsuba-ulp", "mitsuba-offset"])
