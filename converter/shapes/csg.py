@@ -314,7 +314,9 @@ def mitsuba_shape(shape: Csg, meshing: "Meshing", name: str) -> tuple[dict[str, 
     """A `mesh` with a normal for each corner."""
     from converter.to_mitsuba.meshes.csg import csg_mesh
 
-    mesh = csg_mesh(program_of(shape), meshing.bounds, meshing.view, name)
+    region = region_of(shape)
+    bounds = meshing.bounds if region is None else meshing.bounds.narrowed(region.low, region.high)
+    mesh = csg_mesh(program_of(shape), bounds, meshing.view, name)
     return {"type": "mesh", "mesh": mesh}, {"deviation": mesh.deviation}
 
 
