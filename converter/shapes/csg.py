@@ -24,6 +24,7 @@ from converter.shapes.csg_program import (
 from converter.shapes.csg_regions import region_of
 from converter.shapes.kind import Distances, Facts, Horizon, Intersection
 from converter.shapes.primitives import primitive_kind
+from converter.shapes.quadric import classified
 
 if TYPE_CHECKING:
     from converter.scene.reader import Reader
@@ -325,10 +326,20 @@ def povray(shape: Csg, facts: Facts) -> str:
     program = program_of(shape)
 
     def leaf(k: int) -> str:
-        return primitive_kind(program.leaves[k]).povray(program.leaves[k], program.facts[k])
+        return _povray_leaf(program.leaves[k], program.facts[k])
 
     def combined(operation: int, a: str, b: str) -> str:
         inner = f"{a}\n{b}".replace("\n", "\n  ")
         return f"{POVRAY[operation]} {{\n  {inner}\n}}"
 
     return fold(program.code, leaf, combined)
+
+
+def _povray_leaf(leaf: Primitive, facts: Facts) -> str:
+    """POV-Ray takes the complement of an ellipsoid for as small as that, unless it is told of the ellipsoid."""
+    kind = primitive_kind(leaf)
+    if isinstance(leaf, Quadric) and classified(leaf).startswith("complement"):
+        a, b, c, d, e, f, g, h, i, j = (0.0 - x for x in leaf.coefficients)
+        block = kind.povray(Quadric((a, b, c, d, e, f, g, h, i, j)), facts)
+        return f"{block.removesuffix('}')}inverse }}"
+    return kind.povray(leaf, facts)
