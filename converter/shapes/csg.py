@@ -252,14 +252,14 @@ def intersections(shape: Csg, origin: "Floats", direction: "Floats") -> list[Int
 
 
 def silhouette_margin(shape: Csg, origin: "Floats", direction: "Floats") -> float:
-    """By its leaves."""
+    """By its leaves, and by where two of them meet."""
     from converter.shapes import csg_rays
 
     return csg_rays.silhouette_margin(shape, origin, direction)
 
 
 def edge_margin(shape: Csg, origin: "Floats", direction: "Floats") -> float:
-    """By its leaves, and by where two of them meet."""
+    """By the faces of its leaves."""
     from converter.shapes import csg_rays
 
     return csg_rays.edge_margin(shape, origin, direction)
