@@ -130,13 +130,13 @@ def test_random_csgs_of_many_leaves(seed):
     assert disagreeing(picture(NativeRenderer(), scene, settings), exact_picture(scene, settings)) == 0
 
 
-# Opaque ones with bounds: which crossings of a csg POV-Ray refracts at is another question.
 @needs_povray
-@pytest.mark.parametrize("name", [name for name in BODIES if name not in ("stacked", "flush", "complement")])
-def test_povray_agrees_where_no_surfaces_coincide(name):
-    scene = scene_with(BODIES[name], MATTE)
-    native = picture(NativeRenderer(), scene, LARGE)
-    assert disagreeing(picture(PovrayRenderer(), scene, LARGE), native) <= LARGE.width * LARGE.height // 1000
+@pytest.mark.parametrize("finish", [MATTE, GLASS], ids=["opaque", "glass"])
+@pytest.mark.parametrize("name", [name for name in BODIES if name not in ("stacked", "flush")])
+def test_povray_agrees_where_no_surfaces_coincide(name, finish):
+    scene, settings = scene_with(BODIES[name], finish), replace(LARGE, cutoff=0.0, max_depth=8)
+    native = picture(NativeRenderer(), scene, settings)
+    assert disagreeing(picture(PovrayRenderer(), scene, settings), native) <= LARGE.width * LARGE.height // 1000
 
 
 def test_povray_is_told_where_surfaces_coincide():

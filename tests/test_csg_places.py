@@ -173,9 +173,9 @@ def test_margins_tell_how_near_a_ray_is_to_what_it_would_meet():
     down = np.array((0.0, -1.0, 0.0))
     past = kind.silhouette_margin(bitten, np.array((-1.25, 5.0, 0.0)), down)
     assert past == pytest.approx(0.25)
-    assert kind.edge_margin(bitten, np.array((-0.5, 5.0, 0.0)), down) == math.inf
+    assert kind.edge_margin(bitten, np.array((-0.5, 5.0, 0.0)), down) == math.inf  # a ball has one face
     on_rim = np.array((RIM[0] + 0.01, 5.0, 0.0))  # the line crosses both balls at nearly one place
-    assert 1e-4 < kind.edge_margin(bitten, on_rim, down) < 0.01
+    assert 1e-4 < kind.silhouette_margin(bitten, on_rim, down) < 0.01
     hidden = csg("+", CUBE, "+", Sphere((0.0, 0.0, 0.0), 0.5))
     assert kind.silhouette_margin(hidden, np.array((0.5, 5.0, 0.0)), down) == pytest.approx(0.5)  # to the cube's side
 

@@ -24,6 +24,7 @@ from converter.shapes.csg_program import (
 from converter.shapes.csg_regions import region_of
 from converter.shapes.kind import Distances, Facts, Horizon, Intersection
 from converter.shapes.primitives import primitive_kind
+from converter.shapes.quadric import classified
 
 if TYPE_CHECKING:
     from converter.scene.reader import Reader
@@ -251,14 +252,14 @@ def intersections(shape: Csg, origin: "Floats", direction: "Floats") -> list[Int
 
 
 def silhouette_margin(shape: Csg, origin: "Floats", direction: "Floats") -> float:
-    """By its leaves."""
+    """By its leaves, and by where two of them meet."""
     from converter.shapes import csg_rays
 
     return csg_rays.silhouette_margin(shape, origin, direction)
 
 
 def edge_margin(shape: Csg, origin: "Floats", direction: "Floats") -> float:
-    """By its leaves, and by where two of them meet."""
+    """By the faces of its leaves."""
     from converter.shapes import csg_rays
 
     return csg_rays.edge_margin(shape, origin, direction)
@@ -314,7 +315,9 @@ def mitsuba_shape(shape: Csg, meshing: "Meshing", name: str) -> tuple[dict[str, 
     """A `mesh` with a normal for each corner."""
     from converter.to_mitsuba.meshes.csg import csg_mesh
 
-    mesh = csg_mesh(program_of(shape), meshing.bounds, meshing.view, name)
+    region = region_of(shape)
+    bounds = meshing.bounds if region is None else meshing.bounds.narrowed(region.low, region.high)
+    mesh = csg_mesh(program_of(shape), bounds, meshing.view, name)
     return {"type": "mesh", "mesh": mesh}, {"deviation": mesh.deviation}
 
 
@@ -323,10 +326,20 @@ def povray(shape: Csg, facts: Facts) -> str:
     program = program_of(shape)
 
     def leaf(k: int) -> str:
-        return primitive_kind(program.leaves[k]).povray(program.leaves[k], program.facts[k])
+        return _povray_leaf(program.leaves[k], program.facts[k])
 
     def combined(operation: int, a: str, b: str) -> str:
         inner = f"{a}\n{b}".replace("\n", "\n  ")
         return f"{POVRAY[operation]} {{\n  {inner}\n}}"
 
     return fold(program.code, leaf, combined)
+
+
+def _povray_leaf(leaf: Primitive, facts: Facts) -> str:
+    """POV-Ray takes the complement of an ellipsoid for as small as that, unless it is told of the ellipsoid."""
+    kind = primitive_kind(leaf)
+    if isinstance(leaf, Quadric) and classified(leaf).startswith("complement"):
+        a, b, c, d, e, f, g, h, i, j = (0.0 - x for x in leaf.coefficients)
+        block = kind.povray(Quadric((a, b, c, d, e, f, g, h, i, j)), facts)
+        return f"{block.removesuffix('}')}inverse }}"
+    return kind.povray(leaf, facts)

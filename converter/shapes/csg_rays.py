@@ -39,9 +39,9 @@ def intersections(shape: Csg, origin: Floats, direction: Floats) -> list[Interse
 
 
 def silhouette_margin(shape: Csg, origin: Floats, direction: Floats) -> float:
-    """By the leaves whose coming or going there matters."""
+    """By the leaves whose coming or going there matters, and by where two of them meet."""
     program = program_of(shape)
-    result = math.inf
+    result = _tie_margin(program, origin, direction)
     for k, leaf in enumerate(program.leaves):
         kind = primitive_kind(leaf)
         found = [at.t for at in kind.intersections(leaf, origin, direction)]
@@ -51,7 +51,7 @@ def silhouette_margin(shape: Csg, origin: Floats, direction: Floats) -> float:
 
 
 def edge_margin(shape: Csg, origin: Floats, direction: Floats) -> float:
-    """By the faces of each leaf, and by pairs of leaves that the line crosses in one order, and nearby in the other."""
+    """By the faces of each leaf."""
     program = program_of(shape)
     crossings = [crossing for crossing in _crossings(program, origin, direction) if crossing.at.cosine]
     margins = [
@@ -59,13 +59,19 @@ def edge_margin(shape: Csg, origin: Floats, direction: Floats) -> float:
         for k, at in crossings
         if _matters(program, k, origin + at.t * direction)
     ]
+    return min(margins, default=math.inf)
+
+
+def _tie_margin(program: Program, origin: Floats, direction: Floats) -> float:
+    """By pairs of leaves that the line crosses in one order, and nearby in the other."""
+    crossings = [crossing for crossing in _crossings(program, origin, direction) if crossing.at.cosine]
     pairs = sorted(
         (tie_margin(a.at, b.at), i, j)
         for (i, a), (j, b) in combinations(enumerate(crossings), 2)
         if a.leaf != b.leaf and not _coincide(a.at, b.at)
     )
     ties = (tie for tie, i, j in pairs if _order_matters(program, crossings[i], crossings[j], origin, direction))
-    return min([*margins, next(ties, math.inf)])
+    return next(ties, math.inf)
 
 
 def _order_matters(program: Program, a: _Crossing, b: _Crossing, origin: Floats, direction: Floats) -> bool:

@@ -307,12 +307,16 @@ def _sides(surface: _Surface, corners: Floats, outward: NDArray[np.bool_]) -> It
 
 
 def _errors(surface: _Surface, points: Floats, normals: Floats, triangles: Integers, view: View) -> tuple[float, float]:
-    """How far the middles of triangles near the eye are off a surface, and the angle by which their normals are."""
-    middle = points[triangles].mean(axis=1)
-    distance = np.maximum(np.linalg.norm(middle - np.array(view.eye), axis=1), view.near)
-    near = distance <= 4 * distance.min()
-    placed = surface.nearest(middle[near])
-    mean = normals[triangles[near]].sum(axis=1)
+    """How far triangles near the eye are off a surface, and the angle by which their normals are.
+
+    They are looked at in their middles and in those of their edges.
+    """
+    distance = np.maximum(np.linalg.norm(points[triangles].mean(axis=1) - np.array(view.eye), axis=1), view.near)
+    near = triangles[distance <= 4 * distance.min()]
+    parts = [near, near[:, [0, 1]], near[:, [1, 2]], near[:, [2, 0]]]
+    middle = np.vstack([points[part].mean(axis=1) for part in parts])
+    mean = np.vstack([normals[part].sum(axis=1) for part in parts])
+    placed = surface.nearest(middle)
     sine = np.linalg.norm(np.cross(mean, surface.normals(placed)), axis=1) / np.linalg.norm(mean, axis=1)
     tilt = float(np.arcsin(np.minimum(np.nan_to_num(sine), 1.0)).max())
-    return float(np.linalg.norm(placed - middle[near], axis=1).max()), tilt
+    return float(np.linalg.norm(placed - middle, axis=1).max()), tilt
