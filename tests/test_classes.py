@@ -25,7 +25,9 @@ from converter.shapes.kind import Intersection, tie_margin
 from converter.studies.families.scenes import box
 
 SCENES = sorted((Path(__file__).parent.parent / "scenes").glob("*.in"))
-# The margins of a csg do not know how far it is off where leaves meet.
+# Drilled glass, which single precision and meshes get wrong in more pixels than are explained.
+EXPLAINED = [file for file in SCENES if file.stem != "dice"]
+# In a csg an offset may lead past a leaf that no margin tells of.
 PRIMITIVES_ONLY = [file for file in SCENES if " csg " not in file.read_text(encoding="utf-8")]
 SETTINGS = Settings(width=400, height=300)
 NATIVE, FLOAT = METHODS["native"], METHODS["native-float"]
@@ -118,9 +120,9 @@ def test_every_disagreeing_pixel_of_the_gallery_is_explained(mi, file, name="mit
     assert [pixel for pixel in explanation.pixels if pixel.kind == "unexplained"] == []
 
 
-@pytest.mark.parametrize("file", PRIMITIVES_ONLY, ids=lambda file: file.stem)
+@pytest.mark.parametrize("file", EXPLAINED, ids=lambda file: file.stem)
 @pytest.mark.parametrize("name", ["mitsuba-mesh", "native-float"])
-def test_every_disagreeing_pixel_of_primitives_is_explained(mi, file, name):
+def test_every_disagreeing_pixel_of_less_exact_methods_is_explained(mi, file, name):
     test_every_disagreeing_pixel_of_the_gallery_is_explained(mi, file, name)
 
 
