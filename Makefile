@@ -4,6 +4,7 @@
 # make figures  print the figures of the README, and draw its chart
 # make format   draw the pictures of docs/format.md
 # make stability  find where each method fails, and write docs/stability.md
+# make mutants  plant mistakes, and tell which of them the tests do not notice
 # make fuzz     look for inputs that fail, for SECONDS; what it finds is left in out/fuzz
 #
 # Each sets up .venv first, where it is missing or older than what it was made from.
@@ -19,7 +20,7 @@ BIN := .venv/bin
 SOURCES := pyproject.toml CMakeLists.txt $(wildcard native_tracer/src/*.* native_tracer/src/*/* student_tracer/src/*)
 CPP := $(wildcard native_tracer/src/*/*.cpp native_tracer/src/*/*.h student_tracer/src/*.cpp student_tracer/src/*.h)
 
-.PHONY: render test check figures format stability fuzz clean
+.PHONY: render test check figures format stability mutants fuzz clean
 .DELETE_ON_ERROR:
 
 # Status 1 of the comparison says that the pictures differ, which is no failure to render.
@@ -56,6 +57,9 @@ format: .venv/.installed
 
 fuzz: .venv/.fuzzer
 	$(BIN)/python fuzzing/fuzz_scenes.py $(SECONDS)
+
+mutants: .venv/.checkers
+	$(BIN)/python benchmarks/mutants.py
 
 stability: .venv/.installed
 	@mkdir -p docs

@@ -21,7 +21,7 @@ from pathlib import Path
 import numpy as np
 
 from converter.renderers.native import NativeRenderer
-from converter.scene.model import Scene
+from converter.scene.model import Polyhedron, Scene, Sphere
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
 from converter.why.judge import judge
@@ -30,7 +30,9 @@ from converter.why.picture import Picture, Theirs, read_theirs
 from converter.why.student import Causes, Student, deviations, make_student, to_levels
 from converter.why.trials import compatible
 
-SCENES = sorted((Path(__file__).resolve().parent.parent / "scenes").glob("*.in"))
+GALLERY = sorted((Path(__file__).resolve().parent.parent / "scenes").glob("*.in"))
+# A student's tracer has the statement's own shapes.
+SCENES = [p for p in GALLERY if all(isinstance(o.shape, Sphere | Polyhedron) for o in load_scene(p).objects)]
 SIZES = ((320, 240), (400, 300), (480, 270), (300, 400), (256, 256))
 QUALITIES = (40, 60, 75, 85, 95)
 VISIBLE = 2000

@@ -39,6 +39,7 @@ with atheris.instrument_imports(include=["converter"]):
     from converter.scene.model import Texmap
     from converter.scene.parser import load_scene
     from converter.scene.reader import KEYWORDS
+    from converter.shapes.csg_program import OPERATIONS
 
 MEASURED, BY_MITSUBA, BY_PROGRAMS = 16, 32, 64
 """One of so many inputs has its memory measured, is drawn by Mitsuba, if it is a scene, or is given to the programs."""
@@ -48,7 +49,8 @@ TEXTURE = ROOT / "scenes" / "rainbow1.ppm"
 NUMBERS = (
     b"0 -0 1 -1 2 .5 1e-9 1e9 1e-38 1e38 1e-162 1e155 1e-300 1e300 5e-324 1.7e308 -1.7e308 nan inf 1e999 1e-999".split()
 )
-WORDS = [*NUMBERS, *(word.encode() for word in sorted(KEYWORDS)), b"#", b"\n", b"\r\n", b"\0", b"P3", b"P6", b"65535"]
+NAMES = [word.encode() for word in sorted(KEYWORDS.union(OPERATIONS))]
+WORDS = [*NUMBERS, *NAMES, b"#", b"\n", b"\r\n", b"\0", b"P3", b"P6", b"65535"]
 
 
 def check(data: bytes) -> None:

@@ -7,6 +7,11 @@ from typing_extensions import Buffer
 
 _Triple = Sequence[float]
 _Quadruple = Sequence[float]
+_Leaf = (
+    tuple[Literal["sphere"], _Quadruple]
+    | tuple[Literal["polyhedron"], Sequence[_Quadruple]]
+    | tuple[Literal["quadric"], Sequence[float]]
+)
 
 class _Statistics(TypedDict):
     primary: int
@@ -57,6 +62,19 @@ class Scene:
 
     @overload
     def add_polyhedron(self, pigment: int, finish: int, planes: Buffer) -> int: ...
+    def add_quadric(self, pigment: int, finish: int, coefficients: Sequence[float]) -> int:
+        """Add a quadric, and return its index.
+
+        The coefficients are A to J, inside where
+        A x^2 + B y^2 + C z^2 + D x y + E x z + F y z + G x + H y + I z + J <= 0.
+        """
+
+    def add_csg(self, pigment: int, finish: int, leaves: Sequence[_Leaf], program: Sequence[int]) -> int:
+        """Add constructive solid geometry, and return its index.
+
+        The program is a Boolean expression in postfix order: k >= 0 pushes leaf k, -1 unites the last two, -2 subtracts
+        them, -3 intersects them. There are 64 leaves at most.
+        """
 
 class Image:
     """A picture to be drawn into: linear RGB, row 0 on top, black at first."""

@@ -342,12 +342,44 @@ class SceneText:
         faces = "\n".join(numbers(plane) for plane in planes)
         self._objects.append(f"{pigment} {finish} polyhedron {len(planes)}\n{faces}")
 
+    def body(self, pigment: int, finish: int, text: str) -> None:
+        """Add an object, its shape written as in the file."""
+        self._objects.append(f"{pigment} {finish} {text}")
+
     def __str__(self) -> str:
         comment = "\n".join(f"# {line}".rstrip() for line in self.comment.strip().splitlines())
         parts = [f"{comment}\n# Computed by {self.script}.\n{self._camera}"]
         for entries in (self._lights, self._pigments, self._finishes, self._objects):
             parts.append("\n".join([str(len(entries)), *entries]))
         return "\n\n".join(parts) + "\n"
+
+
+# ---- Shapes, as they are written -------------------------------------------------------------------------------------
+
+
+def ball(center: Vector, radius: float) -> str:
+    """A ball."""
+    return f"sphere {numbers((*center, radius))}"
+
+
+def half_spaces(planes: Sequence[Plane]) -> str:
+    """What half-spaces have in common."""
+    return "\n".join([f"polyhedron {len(planes)}", *map(numbers, planes)])
+
+
+def quadric(coefficients: Sequence[float]) -> str:
+    """A surface of second degree, by its ten numbers."""
+    return f"quadric {numbers(coefficients)}"
+
+
+def csg(*operands: str) -> str:
+    """Operands, each its sign, a blank, and a shape: `csg("+ sphere 0 0 0 1", "- sphere 1 0 0 1")`."""
+    lines = [f"csg {len(operands)}"]
+    for operand in operands:
+        sign, shape = operand.split(" ", 1)
+        first, *others = shape.splitlines()
+        lines += [f"  {sign} 0 0 {first}", *(f"    {line}" for line in others)]
+    return "\n".join(lines)
 
 
 # ---- Vectors and bodies ----------------------------------------------------------------------------------------------
@@ -892,7 +924,59 @@ def prisms() -> SceneText:
     return s
 
 
+def dice() -> SceneText:
+    """Cubes that a ball rounds and that balls are drilled into."""
+    s = SceneText(
+        "Dice: what a cube and a ball have in common, less 21 balls for the eyes. One is of glass.",
+        (1.2, 4.6, -9.5),
+        (0.1, 0.75, 0),
+        27,
+    )
+    s.light((-30, 50, -30), (0.62, 0.60, 0.56))
+    s.light((20, 30, -40), (0.26, 0.27, 0.30))
+    sky = s.pigment(sky_at("sunset", 300))
+    felt = s.pigment("checker 0.10 0.40 0.26 0.08 0.34 0.22 0.9")
+    colors = [(0.95, 0.92, 0.84), (0.80, 0.10, 0.12), (0.88, 0.95, 0.98)]
+    ivory, red, clear = (s.solid(color) for color in colors)
+    shine = s.finish(SKY)
+    cloth = s.finish("0.35 0.60 0 1 0 0 0")
+    lacquer = s.finish("0.26 0.62 0.5 120 0.06 0 0")
+    glass = s.finish("0.02 0.03 0.8 300 0.08 0.88 1.5")
+    s.sphere(sky, shine, (0, 0, 0), 300)
+    s.polyhedron(felt, cloth, [top(0)])
+    s.body(ivory, lacquer, die((-1.55, 1, 0.9), 32))
+    s.body(red, lacquer, die((1.6, 1, 1.2), -18))
+    s.body(clear, glass, die((0.35, 1.001, -2.1), 9))
+    return s
+
+
+EYES: dict[int, tuple[tuple[float, float], ...]] = {
+    1: ((0, 0),),
+    2: ((-1, -1), (1, 1)),
+    3: ((-1, -1), (0, 0), (1, 1)),
+    4: ((-1, -1), (-1, 1), (1, -1), (1, 1)),
+    5: ((-1, -1), (-1, 1), (0, 0), (1, -1), (1, 1)),
+    6: ((-1, -1), (-1, 0), (-1, 1), (1, -1), (1, 0), (1, 1)),
+}
+"""Where a die's eyes are on each of its faces."""
+
+
+def die(center: Vector, degrees: float) -> str:
+    """A die, its edges 2 long, turned about the vertical; opposite faces have seven eyes."""
+    x, y, z = (turned(axis, 1, degrees) for axis in ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
+    faces: list[Plane] = []
+    eyes = []
+    for (up, right, ahead), count in zip(((x, y, z), (y, z, x), (z, x, y)), (3, 5, 1), strict=True):
+        for normal, number_of_eyes in ((up, count), (scale(up, -1), 7 - count)):
+            faces.append((*normal, -dot(normal, center) - 1))
+            for p, q in EYES[number_of_eyes]:
+                middle = add(add(scale(normal, 1.06), scale(right, 0.5 * p)), scale(ahead, 0.5 * q))
+                eyes.append(f"- {ball(add(center, middle), 0.21)}")
+    return csg(f"+ {half_spaces(faces)}", f"& {ball(center, 1.46)}", *eyes)
+
+
 SCENES: dict[str, Callable[[], SceneText]] = {
+    "dice": dice,
     "brilliant": brilliant,
     "checker": checker,
     "endless": endless,

@@ -12,6 +12,9 @@ SHAPES = {
     "sphere": "sphere 0 0 0 1",
     "polyhedron": "polyhedron 7  1 0 0 -1  -1 0 0 -1  0 1 .1 -.9  0 -1 0 -.9  0 0 1 -1  0 0 -2 -2  1 1 1 -9",
     "plane": "plane .1 1 .2 .3",
+    "quadric": "quadric 1 1.5 2 .3 -.2 .1 .2 0 -.1 -1",
+    "csg": "csg 3 + 0 0 sphere 0 0 0 1 - 1 2 csg 2 + 0 0 sphere .4 .5 -.6 .7 & 0 1 polyhedron 1 1 .2 0 -.5"
+    " - 0 0 quadric 1 1 0 0 0 0 0 .2 0 -.1",
 }
 """By its keyword: a body about the origin, about 1 in size unless it has no bounds."""
 

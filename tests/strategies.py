@@ -4,17 +4,22 @@ from collections.abc import Sequence
 from math import hypot
 from pathlib import Path
 
+from hypothesis import assume
 from hypothesis import strategies as st
 
 from converter.scene.model import (
     Camera,
     Checker,
+    Csg,
     Finish,
     Light,
     Object,
+    Operand,
     Pigment,
     Plane,
     Polyhedron,
+    Primitive,
+    Quadric,
     Scene,
     Shape,
     Solid,
@@ -22,6 +27,8 @@ from converter.scene.model import (
     Texmap,
     Vector,
 )
+from converter.shapes.csg_program import program_of
+from converter.shapes.quadric_form import kind_of
 
 coordinates = st.floats(-1000, 1000)
 portions = st.floats(0, 1)
@@ -85,9 +92,33 @@ def polyhedra(draw: st.DrawFn, most_planes: int = 8) -> Polyhedron:
     return Polyhedron(tuple(planes))
 
 
+@st.composite
+def quadrics(draw: st.DrawFn) -> Quadric:
+    """Quadrics of every kind that has a surface."""
+    few = st.integers(-4, 4).map(float)
+    a, b, c, d, e, f = draw(st.tuples(*[few] * 6))
+    g, h, i, j = draw(st.one_of(st.tuples(*[few] * 4), st.tuples(*[coordinates] * 4)))
+    shape = Quadric((a, b, c, d, e, f, g, h, i, j))
+    assume(kind_of(shape).name)
+    return shape
+
+
+def primitives() -> st.SearchStrategy[Primitive]:
+    """Of every kind."""
+    return st.one_of(st.builds(Sphere, vectors, st.floats(0.01, 1000)), polyhedra(), quadrics())
+
+
+@st.composite
+def csgs(draw: st.DrawFn, levels: int = 3) -> Csg:
+    """Csgs, of which some are nothing."""
+    inner = primitives() if levels == 1 else st.one_of(primitives(), csgs(levels - 1))
+    others = st.builds(Operand, st.sampled_from("+-&"), inner)
+    return Csg((Operand("+", draw(inner)), *draw(st.lists(others, max_size=3))))
+
+
 def shapes() -> st.SearchStrategy[Shape]:
-    """Spheres and polyhedra."""
-    return st.one_of(st.builds(Sphere, vectors, st.floats(0.01, 1000)), polyhedra())
+    """Of every kind, all of them something."""
+    return st.one_of(primitives(), csgs().filter(lambda shape: bool(program_of(shape).code)))
 
 
 @st.composite

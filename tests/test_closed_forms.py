@@ -147,6 +147,18 @@ def test_slab_of_glass_shifts_a_ray(middle, written, request):
         assert drawn == pytest.approx([1, 0, 0] if side < 0 else [0, 1, 0], abs=tolerance)
 
 
+def test_a_prism_turns_a_ray_by_a_right_angle(middle):
+    """In by one face, totally reflected by the slanting one, and out by the third, each of which adds its own light."""
+    draw, tolerance = middle
+    planes = ((0.0, 0.0, 1.0, -1.0), (-1.0, 0.0, 0.0, -1.0), (1.0, 0.0, -1.0, -1.0), (0.0, 1.0, 0.0, -1.0))
+    prism = Object(1, 1, Polyhedron((*planes, (0.0, -1.0, 0.0, -1.0))))
+    glass = Finish(0.25, 0.0, 0.0, 1.0, 0.0, 1.0, 1.5)
+    aside = half_space((1.0, 0.0, 0.0), 9.0)
+    colors = ((1.0, 0.0, 0.0), WHITE)
+    made = scene((aside, prism), (GLOW, glass), colors, ambient=WHITE, eye=(0.5, 0.0, 10.0), look_at=(0.5, 0.0, 0.0))
+    assert draw(made) == pytest.approx([1.75, 0.75, 0.75], rel=4 * tolerance)
+
+
 @pytest.mark.parametrize("degrees", [-1e-3, 1e-3])
 def test_total_internal_reflection_begins_at_the_critical_angle(middle, degrees):
     """A camera in glass looks at its surface just below and just past the critical angle."""

@@ -681,7 +681,27 @@ def test_inspect_finds_planes_that_cut_nothing(whitted, tmp_path):
     assert [(p["redundant_planes"], p["bounded"]) for p in found["polyhedra"]] == [([6], True), ([], False)]
     _, out, _ = whitted("inspect", file)
     assert "9, redundant: 1" in out
-    assert "1 polyhedron" in out
+    assert "unbounded" in out and " 1 object\n" in out
+
+
+def test_inspect_names_quadrics(whitted, tmp_path):
+    file = tmp_path / "a.in"
+    cone, slab = "0 0 quadric 1 1 -1 0 0 0 0 0 0 0", "0 0 quadric 1 0 0 0 0 0 0 0 0 -1"
+    ball, outside = "0 0 quadric 1 1 1 0 0 0 0 0 0 -1", "0 0 quadric -1 -1 -1 0 0 0 0 0 0 1"
+    file.write_text(SCENE.replace("\n3\n0 0 sphere", f"\n7\n{cone}\n{slab}\n{ball}\n{outside}\n0 0 sphere"))
+    _, out, _ = whitted("inspect", file, "--json", "-")
+    found = json.loads(out)
+    assert found["objects"]["kinds"] == {"quadric": 4, "sphere": 3}
+    assert found["objects"]["unbounded"] == 3
+    assert [(q["kind"], q["drawn_as"], q["bounded"]) for q in found["quadrics"]] == [
+        ("cone", "quadric", False),
+        ("parallel planes", "polyhedron", False),
+        ("ellipsoid", "sphere", True),
+        ("complement of an ellipsoid", "quadric", False),
+    ]
+    _, out, _ = whitted("inspect", file)
+    assert "unbounded" in out and " 3 objects\n" in out
+    assert "complement of an ellipsoid" in out
 
 
 def test_json_into_no_folder(whitted, scene, tmp_path):

@@ -158,6 +158,16 @@ def test_a_lamp_in_the_ceiling_of_a_room_lights_the_room(mi, method):
     assert (picture[~ceiling] > 0.2 + 0.25).all()
 
 
+@pytest.mark.parametrize("method", EXACT)
+@pytest.mark.parametrize("step", range(3))
+def test_a_lamp_in_a_slope_does_not_light_it_however_near(mi, method, step):
+    """Where the light is near, a height of a rounding error above the slope is a large angle."""
+    place = on_slope(7.0, 11.0 + step, 0.7 * step)
+    view = camera(tuple(p + 0.1 * n for p, n in zip(place, NORMAL, strict=True)), place, 1.0)
+    picture = drawn(scene(view, [(Polyhedron((slope(),)), WHITE, SHINY)], [light(place)]), method)
+    assert np.allclose(picture, 0.2)
+
+
 @pytest.mark.parametrize("method", [m for m in EXACT if m != "mitsuba-mesh"])  # Embree misses what is hardly grazed
 def test_a_lamp_on_the_far_side_of_a_body_is_hidden_by_it(mi, method):
     """What lies on a surface is not seen through the body."""

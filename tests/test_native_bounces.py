@@ -3,7 +3,20 @@
 import math
 
 import pytest
-from native_scenes import BLACK, CONSTANT, EPSILON, PRECISIONS, WHITE, add_finish, box, draw, look, new_scene, trace_ray
+from native_scenes import (
+    BLACK,
+    CONSTANT,
+    EPSILON,
+    PRECISIONS,
+    WHITE,
+    add_finish,
+    box,
+    draw,
+    look,
+    new_scene,
+    normalized,
+    trace_ray,
+)
 
 pytestmark = pytest.mark.parametrize("precision", PRECISIONS)
 
@@ -150,6 +163,19 @@ def test_total_reflection_begins_at_the_critical_angle(precision, entering, tota
         assert second["direction"][1] < 0 and close((second["direction"][0],), (sine * index,), precision)
 
 
+@pytest.mark.parametrize("sine", [0.28, 0.352, 0.6, 0.8, 0.936, 0.96])
+def test_at_the_critical_angle_a_ray_is_bent_along_the_surface(precision, sine):
+    # Sines of Pythagorean triples, and frames of whole numbers; single precision decides no ties.
+    cosine = round(math.sqrt(1 - sine**2), 3)
+    frames = [((2, 3, 6), (3, -6, 2)), ((6, 2, -3), (2, 3, 6)), ((1, 4, 8), (8, -4, 1)), ((0, 9, 0), (9, 0, 0))]
+    for normal, along in frames:
+        scene = new_scene()
+        scene.add_polyhedron(scene.add_solid(WHITE), add_finish(scene, kt=1, eta=1 / sine), [(*normal, 0)])
+        direction = tuple(round(1000 * (sine * a - cosine * n)) for a, n in zip(along, normal, strict=True))
+        first = trace_ray(scene, tuple(-d / 1000 for d in direction), direction, precision=precision, max_depth=1)
+        assert precision == "float" or not first["hit"]["total_reflection"]
+
+
 def test_total_reflection_keeps_both_rays(precision):
     # The weights of a finish that reflects and transmits are not added up, so that each meets the cut-off by itself.
     scene = new_scene()
@@ -158,6 +184,61 @@ def test_total_reflection_keeps_both_rays(precision):
     reflected, transmitted = ray["children"]
     assert reflected["direction"] == transmitted["direction"]
     assert (reflected["weight"], transmitted["weight"]) == (0.25, 0.5)
+
+
+def test_a_prism_turns_a_ray_by_a_right_angle(precision):
+    # In by one face, totally reflected by the slanting one, and out by the third.
+    scene = new_scene()
+    prism = [(0, 1, 0, -1), (-1, 0, 0, -1), (1, -1, 0, -1)]
+    scene.add_polyhedron(scene.add_solid(WHITE), add_finish(scene, kt=1, eta=1 / 1.5), prism)
+    rays = chain(trace_ray(scene, (0.5, 5, 0), (0, -1, 0), precision=precision, max_depth=9))
+    met = [(r["hit"]["plane"], r["hit"]["entering"], r["hit"]["total_reflection"]) for r in rays[:-1]]
+    assert met == [(0, True, False), (2, False, True), (1, False, False)]
+    assert close(rays[-1]["direction"], (-1, 0, 0), precision)
+    assert close(rays[-1]["origin"], (-1, -0.5, 0), precision, 5)
+
+
+def test_a_ray_bent_along_a_face_does_not_leave_by_it(precision):
+    # Near the critical angle, where roundings decide on which side of the face the bent ray leads.
+    index, bent = 1.5, 0
+    for i in range(400):
+        angle = math.asin(1 / index) + (i - 200) * EPSILON[precision] / 4
+        normal = normalized((math.sin(i), 1.7, math.cos(7 * i)))
+        along = normalized((normal[1], -normal[0], 0.0))
+        bubble = [(*normal, 0.0), (*(-c for c in normal), -1.0)]
+        scene = new_scene()
+        scene.add_polyhedron(scene.add_solid(WHITE), add_finish(scene, kt=1, eta=index), bubble)
+        direction = tuple(math.sin(angle) * a - math.cos(angle) * n for a, n in zip(along, normal, strict=True))
+        rays = chain(trace_ray(scene, tuple(-d for d in direction), direction, precision=precision, max_depth=1))
+        if not rays[0]["hit"]["total_reflection"]:
+            bent += 1
+            assert rays[1]["hit"] is None or rays[1]["hit"]["plane"] == 1
+    assert bent > 100
+
+
+@pytest.mark.parametrize("kind", ["mirror", "glass"])
+def test_a_small_ball_makes_directions_uncertain(precision, kind):
+    # A ball of radius 1/20, met where its normal is rational, sends the ray to a wall, to the very edge of a tile: that
+    # of the larger number. The ball's normal, and with it the ray, is off by the error of a point over the radius.
+    for i in range(20):
+        x, y, z = 7.3, 0.2, round(5.1 + 0.17 * i, 2)
+        side, met, left = (1, 0.03, 0.04) if kind == "mirror" else (-1, 0.048, -0.05)
+        finish = {"kr": 1} if kind == "mirror" else {"kt": 1, "eta": 0.625}
+        start = x + met if kind == "mirror" else x
+        edge = round(z + left + side * 2.8, 3)
+        scene = new_scene(WHITE)
+        scene.add_sphere(scene.add_solid(WHITE), add_finish(scene, **finish), (x, y, z), 0.05)
+        tiles = scene.add_checker(WHITE, BLACK, edge / 10)
+        wall = (-side, 0, 0, side * round(start + side * 9.6, 2))
+        scene.add_polyhedron(tiles, add_finish(scene, ka=1), [wall])
+        rays = chain(
+            trace_ray(scene, (x + met, y, z + 8), (0, 0, -1), precision=precision, max_depth=1 if side > 0 else 2)
+        )
+        assert rays[-1]["hit"]["object"] == 1
+        assert close(rays[-1]["hit"]["point"], (start + side * 9.6, y, edge), precision, 20, 8000)
+        column, row = (math.floor(c / (edge / 10)) for c in (start + side * 9.6, y))
+        if precision != "float":  # which decides no ties
+            assert rays[0]["radiance"][0] == (10 + column + row + 1) % 2
 
 
 def test_glass_within_glass(precision):

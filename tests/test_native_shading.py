@@ -60,6 +60,19 @@ def test_checker_counts_cells_by_floor(precision, x, z, even):
     assert ray["local"] == ((0, 1, 0) if even else (1, 0, 0))
 
 
+@pytest.mark.parametrize("column", range(4))
+@pytest.mark.parametrize("share", [0.1, 0.9])
+def test_whole_numbers_are_meant_as_they_stand(precision, column, share):
+    # If the heights of eye and floor were known to an epsilon only, so would be where these small texels are.
+    size, height = 2.0**-30, 2.0**20
+    texels = array("f", [c / 4 for c in range(4) for _ in range(3)])
+    scene = new_scene(WHITE)
+    texture = scene.add_texmap(4, 1, texels, (0.25 / size, 0, 0, 0), (0, 0, 0, 0))
+    scene.add_polyhedron(texture, add_finish(scene, ka=1), [(0, 1, 0, -height)])
+    ray = trace_ray(scene, (0, height + 1, 0), ((column + share) * size, -1, 0), precision=precision)
+    assert ray["radiance"] == (column / 4,) * 3
+
+
 @pytest.mark.parametrize("far", [3e9, 1e13, 1e17])
 def test_checker_and_texmap_survive_any_coordinate(precision, far):
     # Twice the cell's number, no integer holds; the colour is one of the two, or one of the texels.
@@ -246,6 +259,21 @@ def test_light_outside_a_sphere_seen_from_within_is_behind_its_near_side(precisi
 def test_a_light_on_the_surface_is_no_accident(precision):
     ray = floor_seen_at((0, 0), red, {"kd": 1, "ks": 1}, precision, [(BLACK, WHITE, (0, 0, 1))])
     assert ray["local"] == BLACK
+
+
+def test_a_shadow_ray_in_the_plane_of_a_face_is_blocked(precision):
+    # The light is so near that an error of where the ray starts is a large one of its direction.
+    if precision == "float":
+        pytest.skip("decides no ties")
+    for i in range(100):
+        x, z = round(5.1 + 0.37 * i, 2), round(0.3 + 0.11 * i, 2)
+        scene = new_scene()
+        pigment, finish = scene.add_solid(WHITE), add_finish(scene, kd=1)
+        scene.add_polyhedron(pigment, finish, [(0, 1, 0, -0.3)])
+        scene.add_polyhedron(pigment, finish, box((x, -1, z + 0.1), (x + 1, 1, z + 0.2)))
+        scene.add_light((x, 0.5, round(z + 0.3, 2)), WHITE, CONSTANT)
+        ray = trace_ray(scene, (round(x - 0.7, 2), 1.4, round(z - 0.3, 2)), (0.7, -1.1, 0.3), precision=precision)
+        assert ray["hit"]["lights"][0]["shadowed_by"] == 1
 
 
 def test_shadow_rays_are_counted(precision):

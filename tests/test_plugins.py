@@ -317,9 +317,9 @@ def test_quotients_are_rounded_once(mi):
 HOST_DIVISIONS = {
     "intersection/analytic.py": {"_bound"},
     "intersection/columns.py": {"column"},
-    "intersection/contacts.py": {"__init__"},
     "intersection/rounding.py": {"camera_errors"},
     "intersection/shapes/polyhedron.py": {"contacts", "_normalised"},
+    "intersection/shapes/quadric.py": {"_form", "_rows", "_anchor", "_contact"},
     "intersection/shapes/sphere.py": {"contacts"},
     "integrators/pace.py": {"__init__", "rows", "samples", "launch"},
     "trial.py": {"_memory"},
@@ -349,6 +349,22 @@ def test_drjit_exp2_in_double_precision_overflows_where_it_should_underflow(mi):
     import drjit as dr
 
     assert np.isinf(dr.exp2(mi.Float64(-1023.8))[0])
+
+
+@pytest.mark.parametrize("sine", [0.28, 0.352, 0.6, 0.8, 0.936, 0.96])
+def test_at_the_critical_angle_a_ray_is_refracted_along_the_surface(mi, sine):
+    """Sines of Pythagorean triples, and frames of whole numbers."""
+    from mitsuba_plugins.intersection.rays import refract
+
+    cosine = round(math.sqrt(1 - sine**2), 3)
+    frames = np.array(
+        [[(2, 3, 6), (3, -6, 2)], [(6, 2, -3), (2, 3, 6)], [(1, 4, 8), (8, -4, 1)], [(0, 9, 0), (9, 0, 0)]]
+    )
+    normal, along = (frames[:, i] / np.linalg.norm(frames[:, i], axis=1)[:, None] for i in (0, 1))
+    d = mi.Vector3d((sine * along - cosine * normal).T)
+    bent, total, _ = refract(d, mi.Vector3d(normal.T), mi.Float64(1 / sine))
+    assert not np.asarray(total).any()
+    assert np.allclose(np.asarray(bent).T, along, atol=1e-15)
 
 
 def test_power_underflows(mi):

@@ -99,6 +99,9 @@ def test_the_statements_own_example_without_its_texture(tmp_path: Path) -> None:
 LIGHT = "a light needs 9 numbers for position, colour and attenuation, found"
 FINISH = "a finish needs 7 numbers for ka, kd, ks, alpha, kr, kt and ior, found"
 COMMENT, BLANKS = ": a comment starts with '#'", ": blanks separate numbers, and nothing else"
+SPHERE = "sphere needs 4 numbers for its centre and radius, found"
+NO_SURFACE = "this quadric has no surface"
+INSIDE = " (inside is A x^2 + ... + J <= 0)"
 LATER = "an addition to the format that is not supported yet"
 CASES = [
     # the camera
@@ -220,9 +223,35 @@ CASES = [
     (26, "-1 0 0", "-1 0", 26, 1, "a plane needs 4 numbers for a, b, c and d, found 3 on its line"),
     (26, "-300", "-300 1", 26, 1, "a plane needs 4 numbers for a, b, c and d, found 5 on its line"),
     (26, "-1", "-l", 26, 1, "a plane's a must be a number, found '-l'"),
-    (22, "sphere 0 32.7 0 20", "quadric 1 1 1 0 0 0 0 0 0 -1", 22, 5, f"quadric is {LATER}"),
-    (22, "sphere 0 32.7 0 20", "csg 2\n+ 0 0 sphere 1 1 1 1\n- 0 0 sphere 1 1 1 1", 22, 5, f"csg is {LATER}"),
-    (22, "sphere 0 32.7 0 20", "csg 2\n+\n0 0 sphere 1 1 1 1\n-\n0 0 sphere 1 1 1 1", 22, 5, f"csg is {LATER}"),
+    (
+        22,
+        "sphere 0 32.7 0 20",
+        "quadric 1 1 1 0 0 0 0 0 0",
+        22,
+        5,
+        "a quadric needs 10 numbers for A to J, found 9 before the end of the line",
+    ),
+    (
+        22,
+        "sphere 0 32.7 0 20",
+        "quadric 1 1 1 0 0 0 0 0 0 -1 2",
+        22,
+        34,
+        "unexpected '2' after the last number of the object",
+    ),
+    (22, "sphere 0 32.7 0 20", "quadric 1 1 1 0 0 x 0 0 0 -1", 22, 23, "a quadric's F must be a number, found 'x'"),
+    (
+        22,
+        "sphere 0 32.7 0 20",
+        "quadric 1 1 1 0 0 nan 0 0 0 -1",
+        22,
+        23,
+        "a quadric's F must be a number, found 'nan', which is not finite",
+    ),
+    (22, "sphere 0 32.7 0 20", "quadric 1 1 1 0 0 0 0 0 0 1", 22, 5, f"{NO_SURFACE}: no point is inside{INSIDE}"),
+    (22, "sphere 0 32.7 0 20", "quadric -1 0 0 0 0 0 0 0 0 0", 22, 5, f"{NO_SURFACE}: every point is inside{INSIDE}"),
+    (22, "sphere 0 32.7 0 20", "quadric 0 0 0 0 0 0 0 0 0 0", 22, 5, f"{NO_SURFACE}: every point is inside{INSIDE}"),
+    (22, "sphere 0 32.7 0 20", "csg 1\n+ 0 0 sphere 1 1 1", 23, 7, f"{SPHERE} 3 before the end of the line"),
     (22, "20", "20 move 1 0 0", 22, 24, f"move is {LATER}"),
     (28, "-300", "-300 move 1 0 0", 28, 12, f"move is {LATER}"),
     # the end

@@ -10,14 +10,16 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from tie_scenes import TIE_SCENES, traced
+from tie_scenes import CLEAR, GREEN, RED, TIE_SCENES, WHITE, traced
 
 from converter.compare.metrics import LIMIT
 from converter.renderers.methods import METHODS
+from converter.scene.model import Polyhedron
 from converter.scene.parser import load_scene, parse_scene
 from converter.scene.settings import Settings
 from converter.studies.exact.tracer import ExactTracer, exact_picture
 from converter.studies.families import ties
+from converter.studies.families.scenes import NORMAL, camera, on_slope, scene, slope
 
 ROOT = Path(__file__).resolve().parent.parent
 SCRIPT = ROOT / "scenes" / "round_numbers.py"
@@ -61,6 +63,17 @@ def test_small_scenes_are_drawn_by_the_rules(mi, name, method):
     truth = np.array([[pixel.color for pixel in row] for row in traced(name)])
     wrong = disagreeing(drawn(make(), settings, method), truth)
     assert [(x, y, truth[y, x].tolist()) for y, x in np.argwhere(wrong)] == []
+
+
+@pytest.mark.parametrize("method", EXACT)
+def test_what_begins_in_one_plane_is_entered_at_once(mi, method):
+    """Glass written in two ways that are rounded apart, seen so slantingly that a step between them would be seen."""
+    planes = [tuple(factor * c for c in slope()) for factor in (1.0, 0.3)]
+    bodies = [(Polyhedron((plane,)), color, CLEAR) for plane, color in zip(planes, (RED, GREEN), strict=True)]
+    eye = tuple(p + 0.01 / 7 * n for p, n in zip(on_slope(), NORMAL, strict=True))
+    made = scene(camera(eye, on_slope(along=0.5), 0.2, NORMAL), bodies)
+    picture = drawn(made, Settings(24, 18, background=WHITE, max_depth=4), method)
+    assert np.allclose(picture, 0.2 * np.array(RED) + 0.7)
 
 
 def test_scenes_of_round_numbers_are_drawn_by_the_rules(mi, round_numbers, folder):

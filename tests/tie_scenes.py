@@ -219,6 +219,40 @@ def _shadow_edges() -> Scene:
     )
 
 
+def _slopes_in_one_plane() -> Scene:
+    """Written in two ways, which are rounded apart, under a light so low that it would see any step between them."""
+    bodies: list[Body] = [
+        (wall((0.6, 0.9, 1.8), -14.7), RED, MATTE),
+        (wall((2.0, 3.0, 6.0), -49.0), GREEN, MATTE),
+    ]
+    return scene(view((2.6, 3.9, 7.8)), bodies, [light((902.04, -596.94, 6.12))])
+
+
+def _light_near_a_side() -> Scene:
+    """Rays meet the floor in the plane of the box's side, in which the light is."""
+    bodies: list[Body] = [(floor(0.3), WHITE, MATTE), (box((7.1, 0.3, 8.0), (7.6, 1.3, 8.1)), RED, MATTE)]
+    return scene(view((4.1, 3.3, 6.7), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0)), bodies, [light((7.1, 0.8, 8.2))])
+
+
+def _ball_in_floor() -> Scene:
+    """It stands upright on the floor, where rays meet both, and the lights above lean outward by a thousandth."""
+    x, y, z = 122.76, 0.27, -166.1
+    bodies: list[Body] = [(floor(y), WHITE, MATTE), (sphere((x, y, z), 5.0), RED, MATTE)]
+    places = [(5.01, 0.0), (4.008, 3.006), (4.008, -3.006), (3.006, 4.008), (3.006, -4.008)]
+    lights = [light((round(x + right, 3), round(y + 10, 3), round(z + near, 3))) for right, near in places]
+    return scene(view((x + 10, round(y + 6, 2), z), (0.0, -1.0, 0.0), (0.0, 0.0, -1.0)), bodies, lights)
+
+
+def _terminator() -> Scene:
+    """Rays meet the ball where the way to a light only touches it."""
+    shiny = Finish(0.2, 0.5, 0.3, 0.0, 0.0, 0.0, 0.0)
+    bodies: list[Body] = [(sphere((0.1, 0.3, 0.2), 5.0), WHITE, shiny)]
+    places = [(7.1, 0.3, 1.2), (-6.9, 0.3, 1.2), (0.1, 7.3, 1.2), (0.1, -6.7, 1.2)]
+    places += [(3.1, 3.3, 4.2), (3.1, -2.7, 4.2), (-2.9, 3.3, 4.2), (-2.9, -2.7, 4.2)]
+    places += [(-0.9, 0.3, 7.2), (1.1, 0.3, 7.2), (0.1, -0.7, 7.2), (0.1, 1.3, 7.2)]
+    return scene(view((0.1, 0.3, 10.2)), bodies, [light(place) for place in places])
+
+
 def _light_where_a_ray_ends() -> Scene:
     return scene(view((0.0, 1.0, 1.0)), [(floor(0.0), WHITE, MATTE)], [light((0.0, 0.0, -1.0)), light((0.5, 2.0, 0.0))])
 
@@ -298,6 +332,10 @@ TIE_SCENES: dict[str, tuple[str, Callable[[], Scene], Settings]] = {
         ("lights in planes", "light in plane", _light_in_planes, {}),
         ("lights on bodies", "at light", _lights_on_bodies, {}),
         ("light where a ray ends", "light in plane", _light_where_a_ray_ends, {}),
+        ("slopes in one plane", "at start", _slopes_in_one_plane, {}),
+        ("light near a side", "in", _light_near_a_side, {}),
+        ("ball in a floor", "at start", _ball_in_floor, {}),
+        ("terminator", "light in plane", _terminator, {}),
         ("tangent", "tangent", _tangent, {"width": 40, "height": 40}),
         ("small tangent", "tangent", _small_tangent, {"width": 40, "height": 40}),
         ("tangent shadow", "tangent", _tangent_shadow, {}),

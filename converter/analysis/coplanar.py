@@ -7,20 +7,12 @@ from them: distances tie, and of objects at the same distance the first of the f
 plate without thickness: a ray then enters it exactly where it leaves.
 """
 
-from collections.abc import Iterator
 from dataclasses import replace
-from itertools import pairwise
-from math import hypot
 
 from converter.scene.geometry import scene_facts
 from converter.scene.model import Plane, Scene
+from converter.shapes.same_surfaces import same_planes
 from converter.shapes.table import shape_kind
-
-_EPSILON = 2.0**-52
-_SAME = 4 * _EPSILON
-"""How much coefficients of one plane may differ, relative to its normal or its offset: some roundings."""
-_PROBE = (0.5377, 0.7393, 0.4057, 0.3119)
-"""Planes that are the same, or face each other, have the same product with it but for its sign; few others have."""
 
 _Place = tuple[int, int]
 """The index of an object, and of its plane."""
@@ -33,17 +25,10 @@ def with_planes_shared(scene: Scene) -> Scene:
     plate, whatever roundings were allowed for when it was found to be one.
     """
     scene = _with_planes(scene, _plate_backs(scene))
-    changed: dict[_Place, Plane] = {}
-    for cluster in _clusters(scene):
-        heads: list[Plane] = []
-        for place in sorted(cluster):
-            plane = _plane(scene, place)
-            shared = next((same for head in heads if (same := _as_written(plane, head)) is not None), None)
-            if shared is None:
-                heads.append(plane)
-            elif shared != plane:
-                changed[place] = shared
-    return _with_planes(scene, changed)
+    planes = [shape_kind(o.shape).planes(o.shape) for o in scene.objects]
+    places = [(i, k) for i, own in enumerate(planes) for k in range(len(own))]
+    changed = same_planes([plane for own in planes for plane in own])
+    return _with_planes(scene, {places[at]: plane for at, plane in changed.items()})
 
 
 def _with_planes(scene: Scene, changed: dict[_Place, Plane]) -> Scene:
@@ -64,47 +49,8 @@ def _plate_backs(scene: Scene) -> dict[_Place, Plane]:
     for i, fact in enumerate(scene_facts(scene)):
         if fact.plate:
             front, back = fact.plate
-            a, b, c, d = _plane(scene, (i, front))
-            if _plane(scene, (i, back)) != (-a, -b, -c, -d):
+            planes = shape_kind(scene.objects[i].shape).planes(scene.objects[i].shape)
+            a, b, c, d = planes[front]
+            if planes[back] != (-a, -b, -c, -d):
                 found[i, back] = (-a, -b, -c, -d)
     return found
-
-
-def _clusters(scene: Scene) -> Iterator[list[_Place]]:
-    """Planes that may be the same, two or more at a time."""
-    a, b, c, d = _PROBE
-    probed = sorted(
-        (abs(a * p[0] + b * p[1] + c * p[2] + d * p[3]) / hypot(p[0], p[1], p[2]), (i, k))
-        for i, o in enumerate(scene.objects)
-        for k, p in enumerate(shape_kind(o.shape).planes(o.shape))
-    )
-    cluster: list[_Place] = []
-    for (before, place), (after, next_place) in pairwise(probed):
-        if after - before <= 16 * _SAME * (1 + after):
-            cluster = cluster or [place]
-            cluster.append(next_place)
-        elif cluster:
-            yield cluster
-            cluster = []
-    if cluster:
-        yield cluster
-
-
-def _plane(scene: Scene, place: _Place) -> Plane:
-    shape = scene.objects[place[0]].shape
-    return shape_kind(shape).planes(shape)[place[1]]
-
-
-def _as_written(plane: Plane, head: Plane) -> Plane | None:
-    """`head`, or what faces it, if `plane` is the same; else None."""
-    length, head_length = hypot(*plane[:3]), hypot(*head[:3])
-    normal = [n / length for n in plane[:3]]
-    head_normal = [n / head_length for n in head[:3]]
-    offset, head_offset = plane[3] / length, head[3] / head_length
-    sign = 1.0 if sum(m * n for m, n in zip(normal, head_normal, strict=True)) > 0 else -1.0
-    if any(abs(m - sign * n) > _SAME for m, n in zip(normal, head_normal, strict=True)):
-        return None
-    if abs(offset - sign * head_offset) > _SAME * abs(head_offset):
-        return None
-    x, y, z, w = (sign * number for number in head)
-    return (x, y, z, w)

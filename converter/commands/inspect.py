@@ -5,6 +5,7 @@ import math
 from pathlib import Path
 from typing import Any
 
+from converter.commands.csg_trees import csg_lines
 from converter.commands.exits import OK
 from converter.commands.options import Parser, add_reading_options, settings_from
 from converter.commands.results import TextResult
@@ -113,6 +114,24 @@ def _print(found: dict[str, Any]) -> None:
             if p["redundant_planes"] or not p["bounded"]
         ],
     )
+    _print_rows(
+        "quadrics",
+        ("object", "line", "kind", "drawn as", "bounded"),
+        "rrl",
+        [
+            (
+                str(q["object"]),
+                str(q["line"] or ""),
+                q["kind"],
+                q["drawn_as"],
+                "yes" if q["bounded"] else "no",
+            )
+            for q in found["quadrics"]
+        ],
+    )
+    for csg in found["csgs"][:MOST_ROWS]:
+        print()
+        print("\n".join(csg_lines(csg)))
     for warning in found["reading_warnings"]:
         print(f"\nwarning: {warning}")
     for notice in found["notices"]:
@@ -140,7 +159,8 @@ def _overview(found: dict[str, Any]) -> list[tuple[str, str]]:
     if objects["planes"]:
         rows.append(("planes", f"{objects['planes']}, redundant: {objects['redundant_planes']}"))
     if box := found["closing_box"]:
-        rows.append(("unbounded", _counted("polyhedron", objects["unbounded"])))
+        count = objects["unbounded"]
+        rows.append(("unbounded", f"{count} object{'' if count == 1 else 's'}"))
         rows.append(("", f"whose meshes end at {_numbers(box['low'])} and {_numbers(box['high'])}"))
     rows.append(("needs", ", ".join(shading + bounces) or "nothing but ambient light"))
     if bounces:

@@ -6,17 +6,21 @@ from typing import Any
 
 from converter.analysis.cutoff import cutoff_bound
 from converter.analysis.notices import ior_notices, scene_notices
+from converter.commands.csg_trees import csg_trees
 from converter.pigments.table import pigment_kind
-from converter.scene.model import Finish, Pigment, Scene
+from converter.scene.geometry import simplified
+from converter.scene.model import Finish, Pigment, Polyhedron, Quadric, Scene
 from converter.scene.needs import SceneNeeds, is_index, scene_needs
 from converter.scene.settings import Settings
+from converter.shapes.quadric import classified
 from converter.shapes.table import shape_kind
 
 
 def inspect_scene(scene: Scene, settings: Settings) -> dict[str, Any]:
     """Everything that `whitted inspect` tells, in the order in which it does."""
-    needs = scene_needs(scene, settings)
-    polyhedra = _polyhedra(scene, needs)
+    drawn = simplified(scene)
+    needs = scene_needs(drawn, settings)
+    polyhedra = _polyhedra(drawn, needs)
     return {
         "file": str(scene.file or ""),
         "camera": asdict(scene.camera),
@@ -30,10 +34,12 @@ def inspect_scene(scene: Scene, settings: Settings) -> dict[str, Any]:
             "kinds": dict(Counter(shape_kind(o.shape).NAME for o in scene.objects)),
             "planes": sum(len(p["planes"]) + len(p["redundant_planes"]) for p in polyhedra),
             "redundant_planes": sum(len(p["redundant_planes"]) for p in polyhedra),
-            "unbounded": sum(not p["bounded"] for p in polyhedra),
+            "unbounded": sum(not bounded for bounded in needs.bounded),
         },
         "polyhedra": polyhedra,
-        "closing_box": _closing_box(scene, needs, settings),
+        "quadrics": _quadrics(scene, drawn, needs),
+        "csgs": csg_trees(scene, drawn, needs),
+        "closing_box": _closing_box(drawn, needs, settings),
         "unused": {
             "pigments": [i for i in range(len(scene.pigments)) if i not in needs.pigments],
             "finishes": [i for i in range(len(scene.finishes)) if i not in needs.finishes],
@@ -108,12 +114,27 @@ def _polyhedra(scene: Scene, needs: SceneNeeds) -> list[dict[str, Any]]:
             "plate": needs.plates[i],
         }
         for i, o in enumerate(scene.objects)
-        if (planes := shape_kind(o.shape).planes(o.shape))
+        if isinstance(o.shape, Polyhedron)
+        for planes in (o.shape.planes,)
+    ]
+
+
+def _quadrics(scene: Scene, drawn: Scene, needs: SceneNeeds) -> list[dict[str, Any]]:
+    return [
+        {
+            "object": i,
+            "line": o.line,
+            "kind": classified(o.shape),
+            "drawn_as": shape_kind(simple.shape).NAME,
+            "bounded": needs.bounded[i],
+        }
+        for i, (o, simple) in enumerate(zip(scene.objects, drawn.objects, strict=True))
+        if isinstance(o.shape, Quadric)
     ]
 
 
 def _closing_box(scene: Scene, needs: SceneNeeds, settings: Settings) -> dict[str, Any] | None:
-    """Where Mitsuba's meshes of unbounded polyhedra end."""
+    """Where Mitsuba's meshes of what has no bounds end."""
     if all(needs.bounded):
         return None
     from converter.to_mitsuba.bounds import scene_bounds

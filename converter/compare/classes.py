@@ -26,20 +26,22 @@ from converter.compare.margins import (
     intersections,
     silhouette_margin,
     surface_margin,
-    tie_margin,
 )
 from converter.compare.metrics import LIMIT, Pixels, absolute_difference
 from converter.compare.rays import Pair, pair_trees
 from converter.pigments.table import pigment_kind
 from converter.renderers.records import HitRecord, LightRecord, PixelRecord, RayRecord, Triple
+from converter.scene.geometry import simplified
 from converter.scene.model import Scene, Shape
 from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings
+from converter.shapes.kind import tie_margin
 from converter.shapes.table import shape_kind
 
 if TYPE_CHECKING:
     from converter.renderers.methods import Method
     from converter.to_mitsuba.meshes import PolyhedronMesh
+    from converter.to_mitsuba.meshes.quadrics import QuadricMesh
 
 Class = Literal[
     "silhouette",
@@ -60,6 +62,8 @@ BATCH = 32
 """Pixels that are traced together: those of which one has too many rays are left out."""
 ROUNDINGS = 8
 """Units by which a number is off that a few operations lead to."""
+SHARPEST = 2.0**-1000
+"""The radius of curvature of a cone's tip, in place of 0."""
 TWICE = 2
 """A ray may inherit so many times what it differs by in the two trees, since either may have crossed the boundary."""
 
@@ -160,7 +164,7 @@ def explain(
     pixels = [(int(columns[i]), int(rows[i])) for i in chosen]
     found: list[Explained] = []
     if pixels:
-        explainer = _Explainer(scene, settings, arithmetic)
+        explainer = _Explainer(simplified(scene), settings, arithmetic)
     for first in range(0, len(pixels), BATCH):
         batch = pixels[first : first + BATCH]
         try:
@@ -338,7 +342,7 @@ class _Explainer:
             distance = float(np.linalg.norm(to_light))
             direction = to_light / distance
             # How far the light is above the horizon of the surface, which turns with the point.
-            turn = 1 + self._curvature(index) * distance
+            turn = 1 + self._curvature(hits[0]) * distance
             rounded = self._rounding * distance
             tilted = self._tilt(hits[0]) * distance
             margins = [_Margin(abs(one.cosine) * distance, turn * inherited, turn * own + rounded + tilted)]
@@ -362,26 +366,26 @@ class _Explainer:
     ) -> _Margin:
         """Of the squared cosine behind the surface, whose sign decides."""
         cosine, eta = self._refraction(ray, hit)
-        turn, steep = self._curvature(hit.object), 2 * eta * eta * cosine
+        turn, steep = self._curvature(hit), 2 * eta * eta * cosine
         margin = abs(1 - eta * eta * (1 - cosine * cosine))
         return _Margin(margin, steep * (direction + turn * inherited), steep * turn * own + self._rounding * eta * eta)
 
     def _spread(self, ray: RayRecord, hit: HitRecord) -> Callable[[float], float]:
         """What an error of the ray's line makes of the position of its hit."""
         cosine = max(abs(float(np.dot(ray.direction, hit.normal))), 1e-12)
-        radius = self._radius(hit.object)
+        radius = self._radius(hit)
         if radius < math.inf:
             return lambda off: min(off / cosine, off + math.sqrt(2 * radius * off))
         return lambda off: off / cosine
 
-    def _radius(self, index: int) -> float:
-        """The smallest radius of curvature of an object."""
-        shape = self._shape(index)
-        return shape_kind(shape).radius_of_curvature(shape)
+    def _radius(self, hit: HitRecord) -> float:
+        """The smallest radius of curvature of the surface at a hit."""
+        shape = self._shape(hit.object)
+        return shape_kind(shape).radius_of_curvature(shape, np.array(hit.point))
 
-    def _curvature(self, index: int) -> float:
+    def _curvature(self, hit: HitRecord) -> float:
         """By what angle the normal turns in a unit of length."""
-        return 1 / self._radius(index)
+        return 1 / max(self._radius(hit), SHARPEST)
 
     def _tilt(self, hit: HitRecord) -> float:
         """By what angle the normal at a hit may be off, where it is a triangle's."""
@@ -395,7 +399,7 @@ class _Explainer:
 
     def _bounced(self, ray: RayRecord, hit: HitRecord, child: RayRecord, direction: float, off: float) -> _Error:
         """The error of a ray that leaves a surface where its origin is off by `off`, one of `direction` coming in."""
-        turned = self._curvature(hit.object) * off + self._tilt(hit) + self._rounding
+        turned = self._curvature(hit) * off + self._tilt(hit) + self._rounding
         off += self._moved * _reach(hit)
         if child.kind == "reflected" or hit.total_reflection:
             return _Error(off, direction + 2 * turned + self._rounding)
@@ -405,8 +409,13 @@ class _Explainer:
         return _Error(off, min(bent / behind, math.sqrt(2 * bent)) + turned + self._rounding)
 
 
-def _tilts(shape: Shape, mesh: "PolyhedronMesh") -> Iterator[tuple[int, float]]:
-    """For each plane that has triangles the largest angle between it and one of those, made of float32 corners."""
+def _tilts(shape: Shape, mesh: "PolyhedronMesh | QuadricMesh") -> Iterator[tuple[int | None, float]]:
+    """For each plane that has triangles the largest angle between it and one of those, made of float32 corners; for a
+    surface that is none what its mesh tells.
+    """
+    if not hasattr(mesh, "planes"):
+        yield None, mesh.tilt
+        return
     corners = mesh.vertices.astype(np.float32).astype(np.float64)[mesh.triangles]
     across = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     normals = np.array([plane[:3] for plane in shape_kind(shape).planes(shape)])[mesh.planes]

@@ -33,10 +33,3 @@ def edge_margin(shape: Shape, origin: Floats, direction: Floats) -> float:
 def surface_margin(shape: Shape, p: Floats, on_it: bool) -> float:
     """From a point to the surface of a shape; if it lies on that, to the next face."""
     return shape_kind(shape).surface_margin(shape, p, on_it)
-
-
-def tie_margin(a: Intersection, b: Intersection) -> float:
-    """From two surfaces that a ray crosses to where it crosses them in the other order."""
-    if a.cosine == 0 or b.cosine == 0:
-        return 0.0
-    return abs(a.t - b.t) / (1 / abs(a.cosine) + 1 / abs(b.cosine))

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from converter.renderers.records import MOST_RAYS, HitRecord, LightRecord, PixelRecord, RayKind, RayRecord
 from converter.scene.settings import Settings
 from mitsuba_plugins.intersection.columns import column
-from mitsuba_plugins.intersection.rays import NOTHING, Ray, lanes
+from mitsuba_plugins.intersection.rays import NOTHING, UPRIGHT, Ray, lanes
 
 
 def trace_pixels(scene: Any, settings: Settings, pixels: Sequence[tuple[int, int]]) -> list[PixelRecord]:
@@ -189,7 +189,9 @@ class _Tracer:
     def _plane(self, index: int, primitive: int) -> int | None:
         """The plane's index in the scene file."""
         integrator = self._integrator
-        piece: int | None = integrator.surfaces[index].shape.pieces[primitive - integrator.first_primitives[index]]
+        piece: int | None = integrator.surfaces[index].pieces[
+            (primitive & UPRIGHT) - integrator.first_primitives[index]
+        ]
         return piece
 
     def _lights(self, ray: Any, hit: Any, finish: Any, pigment: Any, count: int) -> list[list[LightRecord]]:

@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from converter.analysis.coplanar import with_planes_shared
 from converter.pigments.table import pigment_kind
 from converter.renderers.base import Interrupted, Progress, RendererUnavailable, Rendering
+from converter.scene.geometry import simplified
 from converter.scene.model import Scene
 from converter.scene.needs import SceneNeeds, scene_needs
 from converter.scene.settings import Settings
@@ -47,6 +48,7 @@ class NativeRenderer:
         """
         tracer = native_module()
         started = time.perf_counter()
+        scene = simplified(scene)
         needs = scene_needs(scene, settings)
         native_scene = build_scene(scene, needs)
         image = tracer.Image(settings.width, settings.height)
@@ -73,6 +75,7 @@ class NativeRenderer:
         """Trace pixels, as `RayTeller` has it."""
         from converter.renderers.records import pixel_record  # late: a picture needs none
 
+        scene = simplified(scene)
         needs = scene_needs(scene, settings)
         native_scene = build_scene(scene, needs)
         options = self._options(settings, needs)
@@ -136,10 +139,11 @@ def build_scene(scene: Scene, needs: SceneNeeds) -> Any:
 
 
 def _restore_planes(rays: "list[RayRecord]", needs: SceneNeeds) -> None:
-    """Turn the tracer's plane numbers, which skip the planes that have no face, into the scene's."""
+    """Turn the tracer's plane numbers, which skip the planes that have no face, into the scene's; a csg has none."""
     pending = list(rays)
     while pending:
         ray = pending.pop()
         pending.extend(ray.children)
         if ray.hit is not None and ray.hit.plane is not None:
-            ray.hit.plane = needs.planes[ray.hit.object][ray.hit.plane]
+            planes = needs.planes[ray.hit.object]
+            ray.hit.plane = planes[ray.hit.plane] if planes else None

@@ -6,15 +6,16 @@ place; where the words no longer say what belongs to what, `Lost` is raised, and
 that can be read. How each kind of pigment and shape is read stands in `converter.pigments` and `converter.shapes`.
 """
 
+from collections.abc import Mapping
 from math import hypot, sqrt
 
 from converter.pigments.table import PIGMENT_KINDS, PIGMENT_WORDS
 from converter.scene.errors import shown
 from converter.scene.fields import RGB, Lost, Numbers
-from converter.scene.model import Camera, Finish, Light, Object, Pigment, Shape, Vector
+from converter.scene.model import Camera, Finish, Light, Object, Pigment, Vector
 from converter.scene.reader import FINISH_INDEX, NOT_YET, PIGMENT_INDEX, Reader
 from converter.scene.tokens import either, found
-from converter.shapes.table import SHAPE_KINDS, SHAPE_READERS
+from converter.shapes.table import SHAPE_KINDS, SHAPE_READERS, ShapeReader
 
 PIGMENT_NAMES = either(kind.SPELLINGS[0] for kind in PIGMENT_KINDS.values())
 SHAPE_NAMES = either(kind.NAME for kind in SHAPE_KINDS.values())
@@ -114,22 +115,15 @@ def finish(reader: Reader, at: int, k: int) -> tuple[Finish, int]:
 # ------------------------------------------------------------------------------------------------------------- objects
 
 
-def object_(reader: Reader, at: int, k: int) -> tuple[Object | None, int]:
-    """An object: its two indices, its shape; None for one that a later format has."""
+def object_(reader: Reader, at: int, k: int, readers: Mapping[str, ShapeReader] = SHAPE_READERS) -> tuple[Object, int]:
+    """An object: its two indices, and its shape, of those that have readers."""
     first, second, word = reader.several(at, OBJECT_HEAD)
     pigment = reader.index(at, first, PIGMENT_INDEX, reader.pigments)
     finish = reader.index(at + 1, second, FINISH_INDEX, reader.finishes)
-    shape: Shape | None
-    if word in SHAPE_READERS:
-        shape, end = SHAPE_READERS[word](reader, at + 2)
-    elif word == "quadric":
-        reader.complain(at + 2, f"quadric is {NOT_YET}")
-        shape, end = None, reader.after(at, 13)
-    elif word == "csg":
-        raise Lost(at + 2, f"csg is {NOT_YET}")
-    else:
-        raise Lost(at + 2, f"expected {SHAPE_NAMES}, {found(word, SHAPE_READERS)}")
+    if word not in readers:
+        raise Lost(at + 2, f"expected {SHAPE_NAMES}, {found(word, readers)}")
+    shape, end = readers[word](reader, at + 2)
     if reader.text.peek(end) == "move" and end < reader.limit:
         reader.complain(end, f"move is {NOT_YET}")
         end = reader.after(end, 4)
-    return (None if shape is None else Object(pigment, finish, shape, reader.text.line(at))), end
+    return Object(pigment, finish, shape, reader.text.line(at)), end

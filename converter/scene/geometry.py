@@ -1,6 +1,7 @@
 """Whether the shapes of a scene exist, and what is known of each."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from weakref import ReferenceType, ref
 
 from converter.scene.errors import Problem
@@ -33,6 +34,19 @@ def _forget(scene: ReferenceType[Scene]) -> None:
     global _latest
     if _latest is not None and _latest[0] is scene:
         _latest = None
+
+
+def simplified(scene: Scene) -> Scene:
+    """`scene` with the simplest shapes that are the same; itself if it has them."""
+    objects = []
+    for o in scene.objects:
+        shape = shape_kind(o.shape).simplified(o.shape)
+        objects.append(o if shape is o.shape else replace(o, shape=shape))
+    return (
+        scene
+        if all(a is b for a, b in zip(objects, scene.objects, strict=True))
+        else replace(scene, objects=tuple(objects))
+    )
 
 
 def check_geometry(scene: Scene, facts: Sequence[Facts] | None = None) -> list[Problem]:

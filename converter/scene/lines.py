@@ -163,6 +163,8 @@ def _read_head(reader: Reader, at: int, section: Section) -> tuple[int | None, i
 
 def _entry_end(reader: Reader, at: int, section: Section) -> int:
     """Index after the entry that begins at the word `at`, as far as the lines tell."""
+    if "csg" in reader.text.cut(at, 3) and (by_words := _csg_end(reader, at, section)):
+        return by_words
     end = reader.text.line_end(at)
     while reader.text.has(end):
         line = reader.text.on_line(end)
@@ -170,6 +172,17 @@ def _entry_end(reader: Reader, at: int, section: Section) -> int:
             break
         end = reader.text.line_end(end)
     return end
+
+
+def _csg_end(reader: Reader, at: int, section: Section) -> int | None:
+    """Of an entry whose lines may look like entries: where its last word ends a line; if it is not whole, that of the
+    file; None where its words end within a line.
+    """
+    try:
+        _, after = section.read(reader.attempt(), at, 0)
+    except Lost:
+        return HUGE
+    return after if not reader.text.has(after) or reader.text.line_start(after) == after else None
 
 
 def _last_end(reader: Reader, at: int, end: int, section: Section, k: int) -> int:

@@ -6,6 +6,7 @@ degrees, colours linear RGB that is meant to lie in 0..1 but is never clamped he
 
 from dataclasses import dataclass, field
 from pathlib import Path
+from typing import Literal
 
 Vector = tuple[float, float, float]
 Color = tuple[float, float, float]
@@ -89,7 +90,33 @@ class Polyhedron:
     planes: tuple[Plane, ...]
 
 
-Shape = Sphere | Polyhedron
+@dataclass(frozen=True, slots=True)
+class Quadric:
+    """Where A x^2 + B y^2 + C z^2 + D xy + E xz + F yz + G x + H y + I z + J <= 0, the numbers in this order."""
+
+    coefficients: tuple[float, float, float, float, float, float, float, float, float, float]
+
+
+Primitive = Sphere | Polyhedron | Quadric
+"""What a line enters and leaves at most once, or of which that is true for the complement."""
+
+
+@dataclass(frozen=True, slots=True)
+class Operand:
+    """A step of a csg: union, difference or intersection of what there is so far and a shape."""
+
+    operation: Literal["+", "-", "&"]
+    shape: "Shape"
+
+
+@dataclass(frozen=True, slots=True)
+class Csg:
+    """What its operands make, one after the other, starting from nothing."""
+
+    operands: tuple[Operand, ...]
+
+
+Shape = Primitive | Csg
 
 
 @dataclass(frozen=True, slots=True)

@@ -20,13 +20,16 @@ from converter.scene.tokens import (
     whole,
     why_no_number,
 )
+from converter.shapes.csg_program import OPERATIONS
 from converter.shapes.table import SHAPE_READERS
 
 NOT_YET = "an addition to the format that is not supported yet"
 MOST_NOTED = 1000
 """Problems that are kept, so that a large file of nothing else takes little room: those told are the first of them."""
 PIGMENT_INDEX, FINISH_INDEX = "the pigment index", "the finish index"
-KEYWORDS = frozenset([*PIGMENT_WORDS, *SHAPE_READERS, "quadric", "csg", "move"])
+KEYWORDS = frozenset([*PIGMENT_WORDS, *SHAPE_READERS, "move"])
+"""Words of the format that mean something by themselves."""
+_NO_NUMBERS = KEYWORDS.union(OPERATIONS)
 """Words that never stand where a number belongs: a number that is missing before one is noticed there."""
 
 _DIGITS = {sign + str(k): float(sign + str(k)) for sign in ("", "-") for k in range(10)}
@@ -128,7 +131,8 @@ class Reader:
         """What stands at the limit, in words for a message."""
         if not self.text.has(at):
             return "the end of the file"
-        return shown(self.text[at]) if is_name(self.text[at]) else "the end of the line"
+        word = self.text[at]
+        return shown(word) if is_name(word) or word in _NO_NUMBERS else "the end of the line"
 
     def numbers(self, at: int, wanted: Numbers, head: int) -> tuple[float, ...]:
         """The numbers from the word `at` on, NaN for each that is none; `head` is the word that asks for them."""
@@ -149,7 +153,7 @@ class Reader:
     def _faulty_numbers(self, at: int, wanted: Numbers, head: int) -> tuple[float, ...]:
         count = len(wanted.fields)
         words = self.text.cut(at, max(0, min(count, self.limit - at)))
-        taken = next((i for i, word in enumerate(words) if word in KEYWORDS), len(words))
+        taken = next((i for i, word in enumerate(words) if word in _NO_NUMBERS), len(words))
         values = tuple(map(number, words[:taken]))
         bad = [i for i, value in enumerate(values) if value != value]
         for i in bad:
@@ -178,7 +182,7 @@ class Reader:
     def begins_entry(self, at: int) -> bool:
         """Whether another entry, or nothing, begins at the word `at`, where a number belongs."""
         following = self.text.cut(at, max(0, min(3, self.limit - at)))
-        return not following or following[0] in KEYWORDS or (len(following) > 2 and following[2] in SHAPE_READERS)
+        return not following or following[0] in _NO_NUMBERS or (len(following) > 2 and following[2] in SHAPE_READERS)
 
     def index(self, at: int, word: str, what: str, count: int) -> int:
         """The index that the word `at` is, of one of `count` things; `what` is its name."""

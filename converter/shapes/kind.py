@@ -3,7 +3,7 @@
 from collections.abc import Callable, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple, Protocol, TypeVar
 
-from converter.scene.model import Plane, Vector
+from converter.scene.model import Plane, Shape, Vector
 
 if TYPE_CHECKING:
     import numpy as np
@@ -31,7 +31,7 @@ class Facts(NamedTuple):
     drawn: bool = True
     """Whether a ray may hit it. Of what is nothing the others say little."""
     planes: tuple[int, ...] = ()
-    """Which of its planes have a face, ascending; all of them where it is nothing."""
+    """Which of its planes have a face, ascending; all of them where it is nothing, and none of a csg's."""
     plate: tuple[int, ...] = ()
     """The two planes between which it is a plate without thickness; for others none."""
     conflict: tuple[int, ...] = ()
@@ -51,6 +51,13 @@ class Intersection(NamedTuple):
 
     t: float
     cosine: float
+
+
+def tie_margin(a: Intersection, b: Intersection) -> float:
+    """From two surfaces that a ray crosses to where it crosses them in the other order."""
+    if a.cosine == 0 or b.cosine == 0:
+        return 0.0
+    return abs(a.t - b.t) / (1 / abs(a.cosine) + 1 / abs(b.cosine))
 
 
 class Horizon(NamedTuple):
@@ -126,6 +133,10 @@ class ShapeKind(Protocol[S]):
         """What it is in a scene whose lengths are `factor` times as large; its numbers may be infinite there."""
         ...
 
+    def simplified(self, shape: S) -> Shape:
+        """The simplest shape that is the same: itself, unless that is less to model."""
+        ...
+
     # ---- Where it is
 
     def facts(self, shapes: Sequence[S]) -> list[Facts]:
@@ -178,8 +189,8 @@ class ShapeKind(Protocol[S]):
         """From a point to its surface; if it lies on that, to the next face."""
         ...
 
-    def radius_of_curvature(self, shape: S) -> float:
-        """The smallest one that its surfaces have anywhere, a length; infinite if they are flat."""
+    def radius_of_curvature(self, shape: S, p: "Floats") -> float:
+        """One that its surface has at a point of it, or a smaller one, a length; infinite if it is flat."""
         ...
 
     # ---- Renderers

@@ -114,6 +114,11 @@ def scaled(shape: Polyhedron, factor: float) -> Polyhedron:
     return Polyhedron(tuple((a, b, c, factor * d) for a, b, c, d in shape.planes))
 
 
+def simplified(shape: Polyhedron) -> Polyhedron:
+    """Itself; planes that have no face are left out by whoever draws it."""
+    return shape
+
+
 # ---- Where it is -----------------------------------------------------------------------------------------------------
 
 
@@ -250,7 +255,7 @@ def surface_margin(shape: Polyhedron, p: "Floats", on_it: bool) -> float:
     return half_space_arrays.surface_margin(shape, p, on_it)
 
 
-def radius_of_curvature(shape: Polyhedron) -> float:
+def radius_of_curvature(shape: Polyhedron, p: "Floats") -> float:
     """Faces are flat."""
     return math.inf
 

@@ -73,6 +73,11 @@ def scaled(shape: Sphere, factor: float) -> Sphere:
     return Sphere((factor * x, factor * y, factor * z), factor * shape.radius)
 
 
+def simplified(shape: Sphere) -> Sphere:
+    """Itself."""
+    return shape
+
+
 # ---- Where it is -----------------------------------------------------------------------------------------------------
 
 
@@ -151,7 +156,7 @@ def surface_margin(shape: Sphere, p: "Floats", on_it: bool) -> float:
     return math.inf if on_it else abs(math.dist(shape.center, p) - shape.radius)
 
 
-def radius_of_curvature(shape: Sphere) -> float:
+def radius_of_curvature(shape: Sphere, p: "Floats") -> float:
     """The same everywhere."""
     return shape.radius
 

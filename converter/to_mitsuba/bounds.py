@@ -35,6 +35,11 @@ class Box(NamedTuple):
         d, e, f = np.fmax(np.fmin(high, LARGEST), -LARGEST).tolist()
         return cls((a, b, c), (d, e, f))
 
+    def narrowed(self, low: Vector, high: Vector) -> "Box":
+        """What it has in common with the box between two corners, which may be infinite; itself if that is nothing."""
+        lower, upper = np.maximum(self.low, low), np.minimum(self.high, high)
+        return Box.of(lower, upper) if np.all(lower < upper) else self
+
 
 @np.errstate(over="ignore", invalid="ignore")  # numbers may be as large as they like
 def scene_bounds(scene: Scene, settings: Settings | None = None) -> Box:

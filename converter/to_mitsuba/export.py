@@ -123,8 +123,8 @@ def _with_files(name: str, element: dict[str, Any], folder: Path) -> tuple[dict[
         from converter.to_mitsuba.meshes import write_ply
 
         path = folder / "meshes" / f"{name}.ply"
-        write_ply(element["mesh"], path)
-        return rest | {"type": "ply", "filename": f"meshes/{name}.ply", "face_normals": True}, [path]
+        smooth = write_ply(element["mesh"], path)
+        return rest | {"type": "ply", "filename": f"meshes/{name}.ply", "face_normals": not smooth}, [path]
     if "data" in element:
         from converter.images.write import write_image
 

@@ -1,5 +1,6 @@
 """How fine the meshes of a scene are, and where those of what has no bounds end."""
 
+import math
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -10,9 +11,13 @@ from converter.scene.model import Scene, Sphere
 from converter.scene.settings import Settings
 from converter.shapes.table import shape_kind
 from converter.to_mitsuba.bounds import Box, scene_bounds
+from converter.to_mitsuba.meshes.quadrics import View
 
 MOST_TRIANGLES = 1 << 24
 """Of all spheres together, where they are meshes."""
+
+NEAR = 8
+"""What is nearer to the eye than this share of what it looks at is meshed as if it were not."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -65,6 +70,13 @@ class Meshing:
     def bounds(self) -> Box:
         """Where meshes of what has no bounds end."""
         return scene_bounds(self.scene, self.settings)
+
+    @cached_property
+    def view(self) -> View:
+        """Whence meshes are seen that are as fine as the picture needs."""
+        camera, rows = self.scene.camera, self.settings.height * math.isqrt(self.settings.samples)
+        pixel = 2 * math.tan(math.radians(camera.fovy) / 2) / rows
+        return View(camera.eye, math.dist(camera.eye, camera.look_at) / NEAR, pixel)
 
     @cached_property
     def unit_ball(self) -> SphereMesh | None:

@@ -4,6 +4,7 @@ from typing import Any
 
 from converter.analysis.coplanar import with_planes_shared
 from converter.pigments.table import pigment_kind
+from converter.scene.geometry import simplified
 from converter.scene.model import Scene
 from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings
@@ -32,7 +33,7 @@ def scene_description(
         PolyhedronError, ValueError: as `shapes` has it.
 
     """
-    scene = with_planes_shared(scene)
+    scene = with_planes_shared(simplified(scene))
     needs = scene_needs(scene, settings)
     geometry = exact_surfaces(scene, needs)
     found: dict[str, Any] = {}

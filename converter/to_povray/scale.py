@@ -21,7 +21,7 @@ def scaled(scene: Scene, factor: float) -> Scene:
     """`scene` with all lengths multiplied by `factor`, which gives the same picture.
 
     Raises:
-        ExportError: a plane cannot be multiplied.
+        ExportError: a shape cannot be multiplied.
 
     """
     if factor == 1:
@@ -38,8 +38,10 @@ def scaled(scene: Scene, factor: float) -> Scene:
     def object_(source: Object) -> Object:
         kind = shape_kind(source.shape)
         shape = kind.scaled(source.shape, factor)
-        if not all(math.isfinite(d) for *_, d in kind.planes(shape)):
-            raise ExportError("POV-Ray's numbers do not hold this scene: a plane would be too far away")
+        try:
+            kind.write(shape)  # which only finite numbers can be
+        except ValueError:
+            raise ExportError("POV-Ray's numbers do not hold this scene: a surface would be too far away") from None
         return replace(source, shape=shape)
 
     return replace(

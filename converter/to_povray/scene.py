@@ -7,9 +7,11 @@ from dataclasses import dataclass
 import numpy as np
 
 from converter.pigments.table import pigment_kind
-from converter.scene.model import Object, Scene
+from converter.scene.geometry import simplified
+from converter.scene.model import Csg, Object, Scene
 from converter.scene.needs import SceneNeeds, scene_needs
 from converter.scene.settings import Settings
+from converter.shapes.csg_program import program_of
 from converter.shapes.table import shape_kind
 from converter.to_povray.camera import camera
 from converter.to_povray.finishes import finish, transmission
@@ -51,6 +53,7 @@ def povray_scene(scene: Scene, settings: Settings, name: str = "scene") -> Povra
         ExportError: POV-Ray has no numbers for it.
 
     """
+    scene = simplified(scene)
     factor = suitable_scale(scene, scene_needs(scene, settings))
     scene = scaled(scene, factor)
     needs = scene_needs(scene, settings)
@@ -162,6 +165,11 @@ def _objects(scene: Scene, needs: SceneNeeds, omissions: list[str]) -> str:
         if needs.plates[i] and scene.finishes[scene.objects[i].finish].kt > 0:
             place = _place("object", i, lines, i)
             omissions.append(f"{place} is transparent and has no thickness: rays are refracted once there, not twice")
+
+    for i, o in enumerate(scene.objects):
+        if isinstance(o.shape, Csg) and program_of(o.shape).coincident:
+            place = _place("object", i, lines, i)
+            omissions.append(f"{place}: surfaces of its csg coincide, where POV-Ray may leave films, or holes")
 
     def block(i: int, o: Object) -> str:
         texture = _texture(o.finish, o.pigment)

@@ -137,7 +137,7 @@ class Whitted(mi.SamplingIntegrator):
         if self.intersections not in (*INTERSECTIONS, "auto"):
             raise ValueError(f"whitted: intersections is one of {INTERSECTIONS} or auto, not '{self.intersections}'")
         if self.intersections == "auto" or (self.intersections == "bvh" and not self.surfaces):  # of nothing, no tree
-            size = sum(len(surface.shape.rows) for surface in self.surfaces)
+            size = sum(len(surface.rows) for surface in self.surfaces)
             self.intersections = "analytic" if size <= ANALYTIC_LIMIT else "bvh"
         self.precision = props.get("precision", "double")
         if self.precision not in ("double", "float"):

@@ -12,7 +12,7 @@ import mitsuba as mi
 
 from mitsuba_plugins.intersection.contacts import LightContacts
 from mitsuba_plugins.intersection.geometry import Surface
-from mitsuba_plugins.intersection.passages import Crossing, first_crossing
+from mitsuba_plugins.intersection.passages import Crossing, crossing_if
 from mitsuba_plugins.intersection.primitives import ListedRows, Primitives
 from mitsuba_plugins.intersection.rays import NOTHING, Ray, Real, largest
 from mitsuba_plugins.intersection.rounding import most_blur
@@ -25,14 +25,14 @@ class AnalyticSurfaces(ExactSurfaces):
     def __init__(self, types: Real, surfaces: list[Surface], primitives: Primitives, contacts: LightContacts) -> None:
         super().__init__(primitives, contacts)
         self._types = types
-        self._kinds = [surface.kind for surface in surfaces]
-        self._rows = [[types.Vector4(*row) for row in surface.shape.rows] for surface in surfaces]
+        self._solids = [surface.solid for surface in surfaces]
+        self._rows = [[types.Vector4(*row) for row in surface.rows] for surface in surfaces]
         self._bounds = [self._bound(surface) for surface in surfaces]
         dr.make_opaque(self._rows, self._bounds)
 
     def _bound(self, surface: Surface) -> tuple[Any, Any] | None:
         """Centre and radius of a sphere around a bounded surface, if it is worth its test."""
-        if surface.box is None or not surface.kind.BOUNDED_FIRST:
+        if surface.box is None or not surface.solid.bounded_first:
             return None
         low, high = surface.box
         center = ((a + b) / 2 for a, b in zip(low, high, strict=True))
@@ -45,7 +45,7 @@ class AnalyticSurfaces(ExactSurfaces):
         close = mi.Bool(False)
         object_best = mi.UInt32(NOTHING)
         primitive_best = mi.UInt32(0)
-        for index in range(len(self._kinds)):
+        for index in range(len(self._solids)):
             crossing = self._intersect(index, ray, reach, which_piece=True)
             t = crossing.t
             close |= crossing.close
@@ -65,40 +65,29 @@ class AnalyticSurfaces(ExactSurfaces):
         close = dr.full(mi.Bool, False, dr.width(ray.d))
         if active:
             reach = largest(ray.o)
-            for index in range(len(self._kinds)):
+            for index in range(len(self._solids)):
                 crossing = self._intersect(index, ray, reach, which_piece=False)
                 t = crossing.t
                 close |= crossing.close | (t < most_blur(t) * reach)
                 blocks = t < distance
                 if dr.hint(index in self.contacts.objects, mode="scalar"):
-                    blocks &= ~self.contacts.lies_at(light, crossing.primitive, ray.d, t, distance, active)
+                    blocks &= ~self.contacts.lies_at(light, crossing, ray.d, active)
                 found = dr.select(blocks, mi.UInt32(index), found)
         return found, close
 
     def _intersect(self, index: int, ray: Ray, reach: Any, which_piece: bool) -> Crossing:
         """Where rays cross one surface."""
         bound = self._bounds[index]
-        if bound is not None:
-            return self._intersect_bounded(index, bound, ray, reach, which_piece)
-        return self._intersect_rows(index, ray, reach, which_piece)
-
-    @dr.syntax
-    def _intersect_bounded(
-        self, index: int, bound: tuple[Any, Any], ray: Ray, reach: Any, which_piece: bool
-    ) -> Crossing:
-        """A branch and no mask: most packets of rays pass by most surfaces and save their primitives."""
-        t = dr.full(self._types.Float, dr.inf, dr.width(ray.d))
-        primitive = dr.zeros(mi.UInt32, dr.width(ray.d))
-        close = dr.full(mi.Bool, False, dr.width(ray.d))
+        if bound is None:
+            return self._intersect_rows(index, ray, reach, which_piece)
+        # A branch and no mask: most packets of rays pass by most surfaces and save their primitives.
         center, radius = bound
         f = ray.o - center
         b = -dr.dot(f, ray.d)
-        if (dr.squared_norm(f + b * ray.d) <= radius * radius) & (b > -radius):
-            crossing = self._intersect_rows(index, ray, reach, which_piece)
-            t, primitive, close = crossing.t, crossing.primitive, crossing.close
-        return Crossing(t, primitive, 0, close)
+        meets = (dr.squared_norm(f + b * ray.d) <= radius * radius) & (b > -radius)
+        return crossing_if(meets, ray, dr.width(ray.d), lambda: self._intersect_rows(index, ray, reach, which_piece))
 
     def _intersect_rows(self, index: int, ray: Ray, reach: Any, which_piece: bool) -> Crossing:
         own = ray.object == index
         rows = ListedRows(self.primitives.first[index], self._rows[index])
-        return first_crossing(self._kinds[index].passage(rows, ray, own, reach), ray, own, reach, which_piece)
+        return self._solids[index].intersect(rows, ray, own, reach, False, which_piece)

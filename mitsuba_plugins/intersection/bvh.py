@@ -69,8 +69,8 @@ class BvhSurfaces(ExactSurfaces):
         start = _octant(ray.d) * self._node_count
         node = mi.UInt32(start)
         end = start + self._node_count
-        # First the object that the ray travels inside. One that it leaves is convex, and not met again.
-        index = dr.select(ray.inside, ray.object, NOTHING)
+        # First the object that the ray travels inside, or leaves: a convex one it does not meet again.
+        index = ray.object if self.primitives.any_concave else dr.select(ray.inside, ray.object, NOTHING)
         searching = mi.Bool(active)
         while searching:
             tested = searching & (index != NOTHING)
@@ -82,7 +82,7 @@ class BvhSurfaces(ExactSurfaces):
                 ties = (t == t_best) & (object_best != NOTHING) & (index < object_best)
                 closer = tested & ((t < t_best) | ties)
                 if dr.hint(light is not None, mode="scalar"):
-                    closer &= ~self.contacts.lies_at(light, primitive, ray.d, t, distance, closer)
+                    closer &= ~self.contacts.lies_at(light, crossing, ray.d, closer)
                 if dr.hint(light is None, mode="scalar"):
                     farther = dr.select(t < t_best, t_best, dr.select(t > t_best, t, dr.inf))
                     t_second = dr.select(tested & (farther < t_second), farther, t_second)

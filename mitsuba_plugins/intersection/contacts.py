@@ -5,7 +5,7 @@ sign, another one for every ray. So it is settled once, before rays are traced, 
 """
 
 from dataclasses import dataclass
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import drjit as dr
 import mitsuba as mi
@@ -14,8 +14,10 @@ from numpy.typing import NDArray
 
 from mitsuba_plugins.intersection.columns import column
 from mitsuba_plugins.intersection.geometry import Surface
-from mitsuba_plugins.intersection.rays import Ray, Real
+from mitsuba_plugins.intersection.passages import Crossing
+from mitsuba_plugins.intersection.rays import INVERTED, UPRIGHT, Ray, Real
 from mitsuba_plugins.intersection.shapes.kind import ShapeKind, Vector
+from mitsuba_plugins.intersection.solids import Csg
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -25,12 +27,13 @@ Numbers = NDArray[np.float64]
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """A primitive that a point lies on: its object, the outward unit normal there, and the radius; 0 of a plane."""
+    """A primitive that a point lies on: its object and shape, the outward unit normal there, and how it is bent."""
 
     object: int
+    shape: int
     primitive: int
     normal: Vector
-    radius: float
+    curvature: float
 
 
 class Contacts:
@@ -38,33 +41,50 @@ class Contacts:
 
     def __init__(self, surfaces: "Sequence[Surface]") -> None:
         self._surfaces = surfaces
-        counts = [len(surface.shape.given) for surface in surfaces]
-        self._object = np.repeat(np.arange(len(surfaces)), counts)
-        kinds = list({id(surface.kind): surface.kind for surface in surfaces}.values())
-        self._by_kind = [(kind, *self._primitives_of(kind)) for kind in kinds]
-
-    def _primitives_of(self, kind: ShapeKind) -> tuple[NDArray[np.intp], Numbers]:
-        """The primitives of all shapes of a kind: their indices and their rows (n, 4), as given."""
-        primitives = np.flatnonzero(np.array([surface.kind is kind for surface in self._surfaces])[self._object])
-        return primitives, _rows([row for s in self._surfaces if s.kind is kind for row in s.shape.given])
+        self.any_csg = any(isinstance(surface.solid, Csg) for surface in surfaces)
+        # By kind, in the order of objects: where each primitive is, and its numbers as given.
+        self._primitives: dict[ShapeKind, tuple[list[_Place], list[Sequence[float]]]] = {}
+        first = 0
+        for index, surface in enumerate(surfaces):
+            for which, (kind, shape) in enumerate(surface.shapes):
+                places, numbers = self._primitives.setdefault(kind, ([], []))
+                places.extend(_Place(index, which, first + k * kind.ROWS) for k in range(len(shape.given)))
+                numbers.extend(shape.given)
+                first += len(shape.rows)
 
     def of(self, point: Numbers) -> list[Contact]:
-        """The contacts of a point (3,), in the order of the primitives."""
+        """The contacts of a point (3,) with primitives, wherever these are on their bodies, in their order."""
         found = [
-            Contact(int(self._object[primitives[at.row]]), int(primitives[at.row]), at.normal, at.radius)
-            for kind, primitives, rows in self._by_kind
-            for at in kind.contacts(point, rows)
+            Contact(place.object, place.shape, place.primitive, at.normal, at.curvature)
+            for kind, (places, numbers) in self._primitives.items()
+            for at in kind.contacts(point, np.array(numbers, dtype=np.float64))
+            for place in (places[at.row],)
         ]
         return sorted(found, key=lambda contact: contact.primitive)
 
-    def is_on_body(self, point: Numbers, contact: Contact) -> bool:
-        """Whether a point is on the body, and not in a face's plane beside the face."""
+    def on_body(self, point: Numbers, contact: Contact) -> Contact | None:
+        """The contact, its normal outward, if the point is on the body; None in a face's plane beside the face."""
         surface = self._surfaces[contact.object]
-        return surface.kind.contains(point, _rows(surface.shape.given))
+        inside = [kind.contains(point, np.array(shape.given, dtype=np.float64)) for kind, shape in surface.shapes]
+        if not isinstance(surface.solid, Csg):
+            return contact if inside[0] else None
+        below, above = (
+            surface.solid.value([side if k == contact.shape else bit for k, bit in enumerate(inside)])
+            for side in (True, False)
+        )
+        if not inside[contact.shape] or below == above:
+            return None
+        x, y, z = contact.normal
+        turned = Contact(contact.object, contact.shape, contact.primitive | INVERTED, (-x, -y, -z), contact.curvature)
+        return contact if below else turned
 
 
-def _rows(rows: Any) -> Numbers:
-    return np.array(rows, dtype=np.float64).reshape(-1, 4)
+class _Place(NamedTuple):
+    """Of a primitive."""
+
+    object: int
+    shape: int
+    primitive: int
 
 
 class LightContacts:
@@ -77,25 +97,29 @@ class LightContacts:
         found = [contact for of_one in by_light for contact in of_one]
         self.objects = {contact.object for contact in found}
         """The objects that some light lies on."""
+        self._any_csg = contacts.any_csg
         self._end = column(mi.UInt32, np.cumsum([len(of_one) for of_one in by_light], dtype=np.uint32))
         self._primitive = column(mi.UInt32, [contact.primitive for contact in found])
-        self._rows = column(types.Float, [number for c in found for number in (*c.normal, c.radius)] or [0.0] * 4)
+        self._rows = column(types.Float, [x for c in found for x in (*c.normal, c.curvature)] or [0.0] * 4)
 
     @dr.syntax
-    def lies_at(self, light: Any, primitive: Any, d: Any, t: Any, distance: Any, active: Any) -> Any:
-        """Whether a ray that leads to a light at `distance` and meets a primitive at `t` meets it where the light is.
+    def lies_at(self, light: Any, crossing: Crossing, d: Any, active: Any) -> Any:
+        """Whether rays of direction `d` that lead to a light cross there what the light lies on.
 
-        A plane that the light lies on is met there and nowhere else; a sphere is, if not there, then nearer by
-        2 r |n . d|, with n its normal at the light.
+        A plane they do cross there, and nowhere else; of the two crossings of another primitive it is the one where
+        they enter if they enter at the light.
         """
         result = mi.Bool(False)
         if dr.hint(bool(self.objects), mode="scalar"):
-            result = dr.full(mi.Bool, False, dr.width(primitive, t, active))
+            result = dr.full(mi.Bool, False, dr.width(crossing.primitive, d, active))
             i, end = self._range(light, active)
+            primitive, enters = crossing.primitive, crossing.enters
+            if dr.hint(self._any_csg, mode="scalar"):
+                enters ^= primitive >= INVERTED
+                primitive &= UPRIGHT
             while active & (i < end):
                 row = dr.gather(self._types.Vector4, self._rows, i, active)
-                slack = row.w * dr.abs(dr.dot(self._types.Vector3(row.xyz), d))
-                there = (row.w == 0) | (t > distance - slack)
+                there = (row.w == 0) | (enters == (dr.dot(self._types.Vector3(row.xyz), d) < 0))
                 result |= there & (primitive == dr.gather(mi.UInt32, self._primitive, i, active))
                 i += 1
         return result
@@ -106,10 +130,11 @@ class LightContacts:
         result = mi.Bool(False)
         if dr.hint(bool(self.objects), mode="scalar"):
             result = dr.full(mi.Bool, False, dr.width(primitive, active))
+            primitive = primitive & UPRIGHT if self._any_csg else primitive
             i, end = self._range(light, active)
             while active & (i < end):
-                radius = dr.gather(self._types.Float, self._rows, 4 * i + 3, active)
-                result |= (radius == 0) & (primitive == dr.gather(mi.UInt32, self._primitive, i, active))
+                curvature = dr.gather(self._types.Float, self._rows, 4 * i + 3, active)
+                result |= (curvature == 0) & (primitive == dr.gather(mi.UInt32, self._primitive, i, active))
                 i += 1
         return result
 
@@ -123,10 +148,10 @@ class EyeContact:
     """What rays from the eye start on, as rays that leave a surface do. Of several objects it is the first."""
 
     def __init__(self, types: Real, contacts: Contacts, eye: Numbers) -> None:
-        found = [contact for contact in contacts.of(eye) if contacts.is_on_body(eye, contact)]
+        found = [on_it for contact in contacts.of(eye) if (on_it := contacts.on_body(eye, contact)) is not None]
         self._contacts = [contact for contact in found if contact.object == found[0].object]
         self._normals = [types.Vector3(*contact.normal) for contact in self._contacts]
-        self._curvature = types.Float(sum(1 / contact.radius for contact in self._contacts if contact.radius > 0))
+        self._curvature = types.Float(sum(contact.curvature for contact in self._contacts))
         dr.make_opaque(self._normals, self._curvature)
 
     def start(self, ray: Ray) -> Ray:
@@ -136,7 +161,7 @@ class EyeContact:
         contact = self._contacts[0]
         leads_inside = mi.Bool(True)
         # Rays along a plane, too, for a body is closed; not those that touch a sphere. Eye and directions may be off.
-        bound = ray.spread if contact.radius == 0 else -(ray.spread + ray.t_min * self._curvature)
+        bound = ray.spread if contact.curvature == 0 else -(ray.spread + ray.t_min * self._curvature)
         for normal in self._normals:
             leads_inside &= dr.dot(normal, ray.d) < bound
         width = dr.width(ray.d)

@@ -7,7 +7,13 @@ which ties go:
      "object_1": {"material": "name of a BSDF", "planes": {"0": [a, b, c, d], ...},
                   "box": [its lower corner, its upper corner] or null where it is unbounded,
                   "triangles": [plane of each triangle of its mesh], if it has one,
-                  "deviation": largest distance of a mesh vertex from its planes, likewise}}
+                  "deviation": largest distance of a mesh vertex from its planes, likewise},
+     "object_2": {"material": "name of a BSDF", "quadric": [A, B, C, D, E, F, G, H, I, J], "box": likewise},
+     "object_3": {"material": "name of a BSDF", "csg": {"leaves": [as above, without materials], "program": [0, 1, -2]},
+                  "box": likewise}}
+
+A quadric is where A x^2 + B y^2 + C z^2 + D xy + E xz + F yz + G x + H y + I z + J <= 0; it needs no box.
+A csg's program is in postfix notation: k from 0 on is leaf k, -1 a union, -2 a difference, -3 an intersection.
 
 JSON writes the shortest digits that read back as the same double, so that nothing is lost in a file.
 """
@@ -17,21 +23,44 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
-from mitsuba_plugins.intersection.shapes.kind import Shape, ShapeKind, Vector
+from mitsuba_plugins.intersection.shapes.kind import Row, Shape, ShapeKind, Vector
 from mitsuba_plugins.intersection.shapes.table import SHAPE_KINDS
+from mitsuba_plugins.intersection.solids import Csg, Single, Solid, leaves_of
+
+Box = tuple[Vector, Vector]
 
 
 @dataclass(frozen=True, slots=True)
 class Surface:
-    """An object: its shape, and what is known of its mesh."""
+    """An object: its shape, or those that a csg is made of, and what is known of its mesh."""
 
     name: str
     material: str
-    kind: ShapeKind
-    shape: Shape
-    box: tuple[Vector, Vector] | None  # around it, with room for rounding; None where that is not finite
+    solid: Solid
+    shapes: tuple[tuple[ShapeKind, Shape], ...]
+    box: Box | None  # around it, with room for rounding; None where that is not finite
     triangles: tuple[int, ...] = ()
     deviation: float = 0.0
+
+    @property
+    def rows(self) -> list[Row]:
+        """Of all shapes, one after the other."""
+        return [row for _, shape in self.shapes for row in shape.rows]
+
+    @property
+    def pieces(self) -> tuple[int | None, ...]:
+        """What the scene calls the primitive of each row: a plane's index, None if it has no name."""
+        return self.shapes[0][1].pieces if isinstance(self.solid, Single) else (None,) * len(self.rows)
+
+    @property
+    def extent(self) -> float:
+        """The largest coordinate of what is rounded to single precision for Mitsuba, but a mesh's."""
+        return max(shape.extent for _, shape in self.shapes) if isinstance(self.solid, Single) else 0.0
+
+    @property
+    def faceted(self) -> bool:
+        """Whether Mitsuba has a mesh for it, and the description tells each triangle's plane."""
+        return isinstance(self.solid, Single) and self.shapes[0][1].meshed
 
 
 class Geometry:
@@ -59,14 +88,22 @@ def parse_geometry(text: str) -> Geometry:
 
 
 def _surface(name: str, entry: dict[str, Any]) -> Surface:
+    shapes = [_shape(name, leaf) for leaf in (entry["csg"]["leaves"] if "csg" in entry else [entry])]
+    solid: Solid = Single(shapes[0][0])
+    box = shapes[0][1].box
+    if "csg" in entry:
+        program, box = tuple(map(int, entry["csg"]["program"])), entry.get("box")
+        solid = Csg(leaves_of(shapes), program)
+    room = _roomy(*box) if box is not None else None
+    triangles, deviation = tuple(entry.get("triangles", ())), entry.get("deviation", 0.0)
+    return Surface(name, entry["material"], solid, tuple(shapes), room, triangles, deviation)
+
+
+def _shape(name: str, entry: dict[str, Any]) -> tuple[ShapeKind, Shape]:
     key = next((key for key in SHAPE_KINDS if key in entry), None)
     if key is None:
-        raise ValueError(f"whitted: 'geometry' gives {name} none of {', '.join(SHAPE_KINDS)}")
-    kind = SHAPE_KINDS[key]
-    shape = kind.read(entry)
-    box = _roomy(*shape.box) if shape.box is not None else None
-    triangles, deviation = tuple(entry.get("triangles", ())), entry.get("deviation", 0.0)
-    return Surface(name, entry["material"], kind, shape, box, triangles, deviation)
+        raise ValueError(f"whitted: 'geometry' gives {name} none of {', '.join((*SHAPE_KINDS, 'csg'))}")
+    return SHAPE_KINDS[key], SHAPE_KINDS[key].read(entry)
 
 
 def _roomy(low: Vector, high: Vector) -> tuple[Vector, Vector] | None:

@@ -37,7 +37,7 @@ class MeshSurfaces(ExactSurfaces):
         self._scene = scene
         self._found = MitsubaPrimitives(scene, surfaces, primitives)
         self._deviation = column(types.Float, [surface.deviation for surface in surfaces])
-        self._extent = column(types.Float, [surface.shape.extent for surface in surfaces])
+        self._extent = column(types.Float, [surface.extent for surface in surfaces])
 
     def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any, Any]:
         """Distance (infinite for none), object (NOTHING for none) and primitive of the first hit. Looks for no ties."""
@@ -64,14 +64,15 @@ class MeshSurfaces(ExactSurfaces):
             pi = self._scene.ray_intersect_preliminary(probe, coherent=False, active=searching)
             met = searching & pi.is_valid()
             index, index_primitive = self._found.find(pi, met)
-            t_exact = self.primitives.intersect_one(ray, index, index_primitive, met, reach).t
+            crossing = self.primitives.intersect_one(ray, index, index_primitive, met, reach)
+            t_exact = crossing.t
             allowed = t_exact < dr.inf
             accepted = met & allowed & (t_exact < distance)
             if dr.hint(light is not None, mode="scalar"):
-                accepted &= ~self.contacts.lies_at(light, index_primitive, ray.d, t_exact, distance, accepted)
+                accepted &= ~self.contacts.lies_at(light, crossing, ray.d, accepted)
             t = dr.select(accepted, t_exact, t)
             found = dr.select(accepted, index, found)
-            primitive = dr.select(accepted, index_primitive, primitive)
+            primitive = dr.select(accepted, crossing.primitive, primitive)
             # Step over what may not be met. Steps double, so that they get out of any rounding error in a few; where
             # they start from nothing (at the origin, from the eye) they cannot, and end.
             steps += 1

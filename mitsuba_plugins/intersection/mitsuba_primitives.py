@@ -36,9 +36,11 @@ class MitsubaPrimitives:
             surface = surfaces[index]
             object_of[identifier] = index
             first_triangle[identifier] = len(primitive_of)
-            if surface.shape.meshed and shape.primitive_count() != len(surface.triangles):
+            if surface.faceted and shape.primitive_count() != len(surface.triangles):
                 raise ValueError(f"whitted: mesh {surface.name} has not the triangles that 'geometry' gives planes for")
-            row = {piece: row for row, piece in enumerate(surface.shape.pieces)}
+            row: dict[Any, int] = {}
+            for k, piece in enumerate(surface.pieces):
+                row.setdefault(piece, k)  # a piece of several rows is known by the first
             pieces = surface.triangles or (None,) * shape.primitive_count()
             primitive_of.extend(primitives.first[index] + row.get(piece, 0) for piece in pieces)
         self._object = column(mi.UInt32, object_of)

@@ -1,9 +1,11 @@
 """Where a line crosses a primitive, at most twice, and which of the two crossings counts for a ray."""
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from typing import Any
 
 import drjit as dr
+import mitsuba as mi
 
 from mitsuba_plugins.intersection.rays import Ray
 from mitsuba_plugins.intersection.rounding import most_blur
@@ -21,8 +23,8 @@ class Passage:
     inside_before: Any = False  # Bool, whether the line is inside before the near one, and so beyond the far one
     close: Any = False  # Bool, whether that was close to a tie
     between: Any = None  # Float, if there are several planes from where it crosses one to where it crosses the next
-    near_error: Any = 0  # Float, how far `near` may be off where ties are decided, as is `far_error`
-    far_error: Any = 0
+    error: Callable[[Any, Any], Any] | None = None
+    """Where ties are decided how far a distance may be off, of whether it is the near one (Bool) and itself (Float)."""
 
 
 @dataclass
@@ -30,6 +32,7 @@ class Crossing:
     """Where a ray first crosses a shape."""
 
     t: Any  # Float, infinite or NaN if it does not: compare with <
+    enters: Any  # Bool, whether the ray comes from outside
     primitive: Any  # UInt32
     error: Any  # Float, how far t may be off where ties are decided
     close: Any  # Bool, whether that was close to a tie
@@ -53,7 +56,23 @@ def first_crossing(passage: Passage, ray: Ray, own: Any, reach: Any, which_piece
         close |= (t < dr.inf) & (passage.between < most_blur(t) * (reach + t))
     return Crossing(
         t=t,
+        enters=to_near if passage.inside_before is False else to_near != passage.inside_before,
         primitive=dr.select(to_near, passage.near_primitive, passage.far_primitive),
-        error=dr.select(to_near, passage.near_error, passage.far_error),
-        close=close,
+        error=type(t)(passage.error(to_near, t) if passage.error is not None else 0),
+        close=mi.Bool(close),
     )
+
+
+@dr.syntax
+def crossing_if(active: Any, ray: Ray, width: int, intersect: Callable[[], Crossing]) -> Crossing:
+    """What `intersect()` gives, in a branch: where packets of rays may all be spared it."""
+    t = dr.full(type(ray.t_min), dr.inf, width)
+    enters = dr.full(mi.Bool, False, width)
+    primitive = dr.zeros(mi.UInt32, width)
+    error = dr.zeros(type(ray.t_min), width)
+    close = dr.full(mi.Bool, False, width)
+    if active:
+        crossing = intersect()
+        t, enters, primitive, close = crossing.t, crossing.enters, crossing.primitive, crossing.close
+        error += crossing.error
+    return Crossing(t, enters, primitive, error, close)

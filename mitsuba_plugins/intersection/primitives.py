@@ -8,34 +8,42 @@ import mitsuba as mi
 
 from mitsuba_plugins.intersection.columns import column
 from mitsuba_plugins.intersection.geometry import Surface
-from mitsuba_plugins.intersection.passages import Crossing, first_crossing
-from mitsuba_plugins.intersection.rays import Ray, Real
-from mitsuba_plugins.intersection.shapes.kind import SurfacePoint
+from mitsuba_plugins.intersection.passages import Crossing, crossing_if, first_crossing
+from mitsuba_plugins.intersection.rays import UPRIGHT, Ray, Real
+from mitsuba_plugins.intersection.shapes.kind import ShapeKind, SurfacePoint
 from mitsuba_plugins.intersection.shapes.table import SHAPE_KINDS
+from mitsuba_plugins.intersection.solids import Csg, Single, Solid
 
 
 class Primitives:
-    """One row for each sphere and each of a polyhedron's planes, in the order of their objects."""
+    """The rows of all shapes, in the order of their objects."""
 
     def __init__(self, types: Real, surfaces: list[Surface]) -> None:
         rows: list[Any] = []
+        kinds: list[ShapeKind] = []
         self.first = []
         """The index of each object's first primitive."""
         for surface in surfaces:
             self.first.append(len(rows))
-            rows.extend(surface.shape.rows)
+            rows.extend(surface.rows)
+            kinds.extend(kind for kind, shape in surface.shapes for _ in shape.rows)
         self.types = types
-        present = {id(surface.kind): surface.kind for surface in surfaces}
-        self._kinds = list(present.values()) or list(SHAPE_KINDS.values())[:1]  # of nothing any kind will do
+        self._kinds = list(dict.fromkeys(kinds)) or list(SHAPE_KINDS.values())[:1]  # of nothing any kind will do
+        self._solids = list(dict.fromkeys(surface.solid for surface in surfaces)) or [Single(self._kinds[0])]
+        self.any_concave = not all(solid.convex for solid in self._solids)
+        """Whether rays may meet again what they leave."""
+        self.any_csg = any(isinstance(solid, Csg) for solid in self._solids)
+        """Whether primitives may be marked as `INVERTED`."""
         self._rows = column(types.Float, rows)
-        self._kind = column(mi.UInt32, [self._kinds.index(surface.kind) for surface in surfaces])
+        self._kind = column(mi.UInt32, [self._kinds.index(kind) for kind in kinds])
+        self._solid = column(mi.UInt32, [self._solids.index(surface.solid) for surface in surfaces])
         self._first = column(mi.UInt32, self.first)
-        self._count = column(mi.UInt32, [len(surface.shape.rows) for surface in surfaces])
+        self._count = column(mi.UInt32, [len(surface.rows) for surface in surfaces])
         self.object_count = mi.UInt32(len(surfaces))
         dr.make_opaque(self.object_count)
 
     def row(self, primitive: Any, active: Any) -> Any:
-        """The four numbers of a primitive (Vector4)."""
+        """The four numbers of a row (Vector4), by its index."""
         return dr.gather(self.types.Vector4, self._rows, primitive, active)
 
     def intersect(
@@ -44,61 +52,89 @@ class Primitives:
         """Where each ray crosses an object, a different one for each; `by_rules` of ties, or saying if it is close."""
         own = ray.object == index
         first = dr.gather(mi.UInt32, self._first, index, active)
+        width = dr.width(ray.d, index)
 
-        def intersect(kind: Any, active: Any) -> Crossing:
+        def intersect(solid: Solid, active: Any) -> Crossing:
             count = dr.gather(mi.UInt32, self._count, index, active)
-            rows = GatheredRows(self, first, count, active, dr.width(ray.d, index))
-            passage = (kind.passage_by_rules if by_rules else kind.passage)(rows, ray, own, reach)
-            return first_crossing(passage, ray, own, reach, which_piece)
+            rows = GatheredRows(self, first, count, active, width)
+            asked = rows, ray, own, reach, by_rules, which_piece
+            if isinstance(solid, Csg):  # worth a branch
+                return crossing_if(active, ray, width, lambda: solid.intersect(*asked))
+            return solid.intersect(*asked)
 
-        return self._by_kind(index, active, intersect)
+        return _by_kind(self._solids, self._solid, index, active, intersect)
 
     def intersect_one(self, ray: Ray, index: Any, primitive: Any, active: Any, reach: Any) -> Crossing:
-        """Where each ray crosses one primitive of an object, the others left away."""
+        """Where each ray crosses one primitive of an object, the others left away; of a csg none is."""
+        if self.any_csg:
+            whole = mi.Bool(False)
+            for k, solid in enumerate(self._solids):
+                if isinstance(solid, Csg):
+                    whole |= dr.gather(mi.UInt32, self._solid, index, active) == k
+            crossing = self.intersect(ray, index, active & whole, reach)
+            return dr.select(whole, crossing, self._intersect_alone(ray, index, primitive, active & ~whole, reach))
+        return self._intersect_alone(ray, index, primitive, active, reach)
+
+    def _intersect_alone(self, ray: Ray, index: Any, primitive: Any, active: Any, reach: Any) -> Crossing:
         own = ray.object == index
 
-        def intersect(kind: Any, active: Any) -> Crossing:
+        def intersect(kind: ShapeKind, active: Any) -> Crossing:
             rows = GatheredRows(self, primitive, mi.UInt32(1), active, dr.width(ray.d, index))
             return first_crossing(kind.passage(rows, ray, own, reach), ray, own, reach)
 
-        return self._by_kind(index, active, intersect)
+        return _by_kind(self._kinds, self._kind, primitive, active, intersect)
 
     def surface_at(self, ray: Ray, index: Any, primitive: Any, p: Any, active: Any, reach: Any) -> SurfacePoint:
-        """The point of a primitive nearest to a point near it that a ray has met."""
+        """The point of a primitive of object `index` nearest to a point near it that a ray has met."""
         own = ray.object == index
-        row = self.row(primitive, active)
-        return self._by_kind(index, active, lambda kind, _: kind.surface_at(row, p, ray, own, reach))
+        row = primitive & UPRIGHT if self.any_csg else primitive
+        first = self.row(row, active)  # in one gather for all kinds
 
-    def _by_kind(self, index: Any, active: Any, answer: Callable[[Any, Any], Any]) -> Any:
-        """What `answer(kind, active)` gives for the kind of each object."""
-        if len(self._kinds) == 1:
-            return answer(self._kinds[0], active)
-        number = dr.gather(mi.UInt32, self._kind, index, active)
-        result = None
-        for k, kind in enumerate(self._kinds):
-            chosen = number == k
-            found = answer(kind, active & chosen)
-            result = found if result is None else dr.select(chosen, found, result)
+        def surface_at(kind: ShapeKind, active: Any) -> SurfacePoint:
+            rows = GatheredRows(self, row, mi.UInt32(1), active, dr.width(ray.d, index), first)
+            return kind.surface_at(rows, p, ray, own, reach)
+
+        result: SurfacePoint = _by_kind(self._kinds, self._kind, row, active, surface_at)
+        if self.any_csg:
+            result.n = dr.select(primitive == row, result.n, -result.n)
         return result
+
+
+def _by_kind(kinds: list[Any], column: Any, index: Any, active: Any, answer: Callable[[Any, Any], Any]) -> Any:
+    """What `answer(kind, active)` gives for the kind, by its number, that stands at an index of a column."""
+    if len(kinds) == 1:
+        return answer(kinds[0], active)
+    number = dr.gather(mi.UInt32, column, index, active)
+    result = None
+    for k, kind in enumerate(kinds):
+        chosen = number == k
+        found = answer(kind, active & chosen)
+        result = found if result is None else dr.select(chosen, found, result)
+    return result
 
 
 class GatheredRows:
     """The rows of primitives from `first` on, `count` of them, that differ from ray to ray; see `Rows`."""
 
-    def __init__(self, primitives: Primitives, first: Any, count: Any, active: Any, width: int) -> None:
+    def __init__(
+        self, primitives: Primitives, first: Any, count: Any, active: Any, width: int, first_row: Any = None
+    ) -> None:
+        self._first_row = first_row
         self._primitives = primitives
         self._first = first
         self._count = count
         self._active = active
         self.width = width
 
-    def primitive(self) -> Any:
-        """The index of the first."""
-        return self._first
+    def primitive(self, k: int = 0) -> Any:
+        """The index of the row k after the first."""
+        return self._first + k if k else self._first
 
-    def row(self) -> Any:
-        """The first row."""
-        return self._primitives.row(self._first, self._active)
+    def row(self, k: int = 0) -> Any:
+        """The row k after the first."""
+        if k == 0 and self._first_row is not None:
+            return self._first_row
+        return self._primitives.row(self._first + k, self._active)
 
     @dr.syntax
     def fold(self, step: Callable[[Any, Any, Any], Any], state: Any) -> Any:
@@ -120,13 +156,13 @@ class ListedRows:
         self._first = first
         self._rows = rows
 
-    def primitive(self) -> Any:
-        """The index of the first."""
-        return mi.UInt32(self._first)
+    def primitive(self, k: int = 0) -> Any:
+        """The index of the row k after the first."""
+        return mi.UInt32(self._first + k)
 
-    def row(self) -> Any:
-        """The first row."""
-        return self._rows[0]
+    def row(self, k: int = 0) -> Any:
+        """The row k after the first."""
+        return self._rows[k]
 
     def fold(self, step: Callable[[Any, Any, Any], Any], state: Any) -> Any:
         """Code for each of them."""

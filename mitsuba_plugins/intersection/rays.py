@@ -20,6 +20,11 @@ from mitsuba_plugins.intersection.rounding import epsilon, least_spread, most_bl
 NOTHING = 0xFFFFFFFF
 """Object index of a ray that starts on no surface, and of a hit that is none."""
 
+INVERTED = 0x80000000
+"""Bit of a primitive's index: it is the surface of an object, a csg, by its other side."""
+UPRIGHT = INVERTED - 1
+"""The other bits."""
+
 ERROR_BOUND = 64
 """Roundings, generously, between a ray's numbers and the point on it: `t_min` in units of half an ulp of 1."""
 

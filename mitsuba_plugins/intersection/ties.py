@@ -1,5 +1,6 @@
 """The same searches as everywhere, by the format's rules for ties, for the rays that are close to some."""
 
+from dataclasses import replace
 from typing import Any
 
 import drjit as dr
@@ -56,9 +57,7 @@ class Ties:
             tested = dr.zeros(mi.UInt32, dr.width(close))
             while close & (tested < self._primitives.object_count) & (found == NOTHING):
                 met = self._intersect(ray, tested, close)
-                blocks = (met.t < distance) & ~self._contacts.lies_at(
-                    light, met.primitive, ray.d, met.t, distance, close
-                )
+                blocks = (met.t < distance) & ~self._contacts.lies_at(light, met, ray.d, close)
                 found = dr.select(blocks, tested, found)
                 tested += 1
         return found
@@ -70,4 +69,4 @@ class Ties:
         hits = met.t < dr.inf
         most = most_blur(met.t) * (met.t + reach)
         error = dr.select(hits, dr.select(met.error <= most, met.error, most), 0)
-        return Crossing(dr.select(hits, met.t, dr.inf), met.primitive, error, met.close)
+        return replace(met, t=dr.select(hits, met.t, dr.inf), error=error)

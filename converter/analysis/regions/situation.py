@@ -6,6 +6,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from converter.scene.geometry import simplified
 from converter.scene.model import Finish, Scene
 from converter.scene.needs import SceneNeeds, scene_needs
 from converter.scene.settings import Settings
@@ -88,6 +89,7 @@ class Situation:
 @np.errstate(all="ignore")  # numbers may be as large as they like
 def situation_of(scene: Scene, settings: Settings) -> Situation:
     """Work it out."""
+    scene = simplified(scene)
     needs = scene_needs(scene, settings)
     boxes = np.array(needs.boxes, dtype=np.float64).reshape(-1, 2, 3)
     bounded = np.array(needs.bounded, dtype=np.bool_)

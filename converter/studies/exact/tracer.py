@@ -8,7 +8,7 @@ point: after all that is decided.
 import math
 from collections.abc import Callable, Iterator, Sequence
 from dataclasses import dataclass, field
-from typing import assert_never
+from typing import Literal, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
@@ -18,9 +18,11 @@ from converter.scene.model import (
     Camera,
     Checker,
     Color,
+    Csg,
     Finish,
     Pigment,
     Polyhedron,
+    Quadric,
     Scene,
     Shape,
     Solid,
@@ -31,6 +33,7 @@ from converter.scene.model import (
 from converter.scene.needs import is_index, scene_needs
 from converter.scene.settings import Settings
 from converter.studies.exact.arithmetic import Arithmetic, Decimals, Number
+from converter.studies.exact.csg import Along, Leaf, Node, first_met
 from converter.studies.family import Truth
 
 TIES = {
@@ -44,7 +47,7 @@ TIES = {
     "light in plane": "a light lies in the plane of what it might light",
     "at light": "a shadow ray meets a body at the light",
     "at start": "a ray meets another body where it starts",
-    "tangent": "a ray touches a ball",
+    "tangent": "a ray touches a ball, or a quadric",
     "critical": "a ray leaves at the critical angle",
 }
 """Every kind of tie."""
@@ -65,7 +68,7 @@ class Ray:
 
 @dataclass(frozen=True, slots=True)
 class Hit:
-    """What a ray meets, at `distance` times its direction; `plane` is -1 for a sphere; `inside`: met from within."""
+    """What a ray meets, at `distance` times its direction; `plane` is -1 where it is none; `inside`: from within."""
 
     distance: Number
     object: int
@@ -173,9 +176,13 @@ class ExactTracer:
 
     def _meet(self, index: int, ray: Ray) -> Hit | None:
         """Where the ray first meets an object, beyond its own start."""
-        if ray.object == index and not ray.inside:
-            return None  # objects are convex
         shape = self._shapes[index]
+        if isinstance(shape, _Csg):
+            return self._meet_csg(index, shape, ray)
+        if isinstance(shape, _Quadric):
+            return self._meet_quadric(index, shape, ray)
+        if ray.object == index and not ray.inside:
+            return None  # the others are convex
         if isinstance(shape, _Ball):
             return self._meet_ball(index, shape, ray)
         return self._meet_polyhedron(index, shape, ray)
@@ -201,6 +208,45 @@ class ExactTracer:
         outside = self._sign(c) > 0
         return Hit((b - root) / a if outside else (b + root) / a, index, -1, not outside)
 
+    def _meet_quadric(self, index: int, quadric: "_Quadric", ray: Ray) -> Hit | None:
+        """The roots of a t^2 + 2 b t + c = 0, where that changes its sign."""
+        a, b, c = quadric.along(ray.origin, ray.direction)
+        if ray.object == index:
+            inside, roots = ray.inside, self._other_root(a, b)
+        elif self._sign(c) == 0:
+            self._ties.add("at start")
+            inside, roots = (self._sign(b) or self._sign(a)) < 0, self._other_root(a, b)
+        elif self._sign(a) == 0:
+            inside, roots = self._sign(c) < 0, [-c / (2 * b)] if self._sign(b) else []
+        else:
+            discriminant = b * b - a * c
+            if self._sign(discriminant) == 0 and self._sign(a) * self._sign(b) < 0:
+                self._ties.add("tangent")
+            if self._sign(discriminant) <= 0:
+                return None
+            root = self._numbers.root(discriminant)
+            inside, roots = self._sign(c) < 0, [(-b - root) / a, (-b + root) / a]
+        ahead = [t for t in roots if self._sign(t) > 0]
+        return Hit(min(ahead), index, -1, inside) if ahead else None
+
+    def _other_root(self, a: Number, b: Number) -> list[Number]:
+        """Of a t^2 + 2 b t = 0 but 0; where that is a root twice, none."""
+        return [-2 * b / a] if self._sign(a) and self._sign(b) else []
+
+    def _meet_csg(self, index: int, csg: "_Csg", ray: Ray) -> Hit | None:
+        """`plane` is the surface's index among all of its leaves'."""
+        along = [surface.along(ray.origin, ray.direction) for surface in csg.surfaces]
+        if ray.object != index and any(self._sign(c) == 0 for _, _, c in along):
+            self._ties.add("at start")
+        if any(self._sign(a) == self._sign(b) == 0 for a, b, _ in along):
+            self._ties.add("along")
+        met = first_met(csg.node, along, self._numbers, lambda: self._ties.add("tangent"))
+        if met is None:
+            return None
+        if met.tied:
+            self._ties.add("seen edge")
+        return Hit(met.distance, index, met.surface, met.inside)
+
     def _meet_polyhedron(self, index: int, planes: "Sequence[_Plane]", ray: Ray) -> Hit | None:
         """The ray is inside between the last plane that it enters and the first that it leaves."""
         from_within = ray.object == index
@@ -208,8 +254,8 @@ class ExactTracer:
         for k, plane in enumerate(planes):
             if from_within and k == ray.plane:
                 continue
-            slope = _dot(plane.normal, ray.direction)
-            height = _dot(plane.normal, ray.origin) + plane.offset
+            slope = _dot(plane.gradient, ray.direction)
+            height = _dot(plane.gradient, ray.origin) + plane.offset
             if self._sign(slope) == 0:
                 self._ties.add("along" if self._sign(height) else "in")
                 if self._sign(height) > 0:
@@ -246,8 +292,9 @@ class ExactTracer:
         finish = self._scene.finishes[thing.finish]
         point = _sum(ray.origin, _scaled(ray.direction, hit.distance))
         shape = self._shapes[hit.object]
-        normal = _difference(point, shape.center) if isinstance(shape, _Ball) else shape[hit.plane].normal
-        if hit.inside:
+        surfaces = shape.surfaces if isinstance(shape, _Csg) else shape
+        normal = (surfaces[hit.plane] if isinstance(surfaces, list) else surfaces).normal(point)
+        if self._sign(_dot(normal, ray.direction)) > 0:
             normal = _scaled(normal, -1)
         pigment = self._colors[thing.pigment](point)
         color = [finish.ka * a * c for a, c in zip(self._scene.ambient, pigment, strict=True)]
@@ -372,14 +419,32 @@ class ExactTracer:
         x, y, z = (self._numbers.number(c) for c in v)
         return (x, y, z)
 
-    def _shape(self, shape: Shape) -> "_Ball | list[_Plane]":
+    def _shape(self, shape: Shape) -> "_Ball | list[_Plane] | _Quadric | _Csg":
         number = self._numbers.number
         match shape:
             case Sphere(center, radius):
                 return _Ball(self._vector(center), number(radius))
             case Polyhedron(planes):
                 return [_Plane(self._vector((a, b, c)), number(d)) for a, b, c, d in planes]
+            case Quadric(coefficients):
+                return _Quadric(tuple(map(number, coefficients)))
+            case Csg():
+                surfaces: list[_Ball | _Plane | _Quadric] = []
+                return _Csg(self._node(shape, surfaces), surfaces)
         assert_never(shape)
+
+    def _node(self, shape: Csg, surfaces: "list[_Ball | _Plane | _Quadric]") -> Node:
+        """Its expression; the leaves' surfaces are appended."""
+        steps: list[tuple[Literal["+", "-", "&"], Leaf | Node]] = []
+        for operand in shape.operands:
+            if isinstance(operand.shape, Csg):
+                steps.append((operand.operation, self._node(operand.shape, surfaces)))
+                continue
+            leaf, first = self._shape(operand.shape), len(surfaces)
+            assert not isinstance(leaf, _Csg)
+            surfaces += leaf if isinstance(leaf, list) else [leaf]
+            steps.append((operand.operation, Leaf(range(first, len(surfaces)))))
+        return Node(tuple(steps))
 
 
 @dataclass(frozen=True, slots=True)
@@ -387,11 +452,59 @@ class _Ball:
     center: Vec
     radius: Number
 
+    def along(self, p: Vec, d: Vec) -> Along:
+        """Its value at p + t d."""
+        arm = _difference(p, self.center)
+        return _dot(d, d), _dot(arm, d), _dot(arm, arm) - self.radius * self.radius
+
+    def normal(self, point: Vec) -> Vec:
+        """Outward, of any length."""
+        return _difference(point, self.center)
+
+
+@dataclass(frozen=True, slots=True)
+class _Quadric:
+    """The numbers A to J."""
+
+    numbers: tuple[Number, ...]
+
+    def along(self, p: Vec, d: Vec) -> Along:
+        """Its value at p + t d."""
+        g, h, i, j = self.numbers[6:]
+        gradient = self.normal(p)
+        constant = (_dot(p, gradient) + _dot((g, h, i), p)) / 2 + j
+        return _dot(d, _difference(self.normal(d), (g, h, i))) / 2, _dot(d, gradient) / 2, constant
+
+    def normal(self, point: Vec) -> Vec:
+        """The gradient, which points out, and may have any length."""
+        (x, y, z), (a, b, c, d, e, f, g, h, i, _) = point, self.numbers
+        return (
+            2 * a * x + d * y + e * z + g,
+            2 * b * y + d * x + f * z + h,
+            2 * c * z + e * x + f * y + i,
+        )
+
 
 @dataclass(frozen=True, slots=True)
 class _Plane:
-    normal: Vec
+    gradient: Vec
     offset: Number
+
+    def along(self, p: Vec, d: Vec) -> Along:
+        """Its value at p + t d."""
+        return 0 * self.offset, _dot(self.gradient, d) / 2, _dot(self.gradient, p) + self.offset
+
+    def normal(self, point: Vec) -> Vec:
+        """The same everywhere."""
+        return self.gradient
+
+
+@dataclass(frozen=True, slots=True)
+class _Csg:
+    """An expression over leaves, and their surfaces."""
+
+    node: Node
+    surfaces: "list[_Ball | _Plane | _Quadric]"
 
 
 @dataclass(slots=True)

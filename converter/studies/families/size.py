@@ -1,13 +1,15 @@
 """Large and small numbers: scenes of any size, far from the origin, and with large and small things side by side."""
 
 from dataclasses import replace
+from fractions import Fraction
 from functools import cache
 from typing import assert_never
 
 import numpy as np
 
 from converter.renderers.native import NativeRenderer
-from converter.scene.model import Checker, Finish, Object, Plane, Polyhedron, Scene, Shape, Sphere, Vector
+from converter.scene.model import Checker, Csg, Finish, Object, Plane, Polyhedron, Quadric, Scene, Shape, Sphere, Vector
+from converter.shapes import quadric_form
 from converter.studies.families.scenes import (
     GLASS,
     MATTE,
@@ -87,6 +89,10 @@ def moved(whole: Scene, way: Vector) -> Scene:
                 return Sphere(vector(center), radius)
             case Polyhedron(planes):
                 return Polyhedron(tuple(map(plane, planes)))
+            case Quadric():
+                return quadric_form.moved(s, [Fraction(x) for x in way])
+            case Csg(operands):
+                return Csg(tuple(replace(operand, shape=shape(operand.shape)) for operand in operands))
         assert_never(s)
 
     view = whole.camera

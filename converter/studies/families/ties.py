@@ -13,9 +13,11 @@ from typing import assert_never
 from converter.scene.model import (
     Camera,
     Checker,
+    Csg,
     Pigment,
     Plane,
     Polyhedron,
+    Quadric,
     Scene,
     Shape,
     Solid,
@@ -24,6 +26,7 @@ from converter.scene.model import (
     Vector,
 )
 from converter.scene.settings import Settings
+from converter.shapes import quadric_form
 from converter.studies.exact.tracer import exact_picture
 from converter.studies.families.coincidence import BLUE, RED, texture_file
 from converter.studies.families.scenes import (
@@ -167,6 +170,10 @@ def _moved(whole: Scene, times: float) -> Scene:
                 return Sphere(vector(center), number(radius))
             case Polyhedron(planes):
                 return Polyhedron(tuple(map(plane, planes)))
+            case Quadric():
+                return quadric_form.moved(s, shift, _UNIT)
+            case Csg(operands):
+                return Csg(tuple(replace(operand, shape=shape(operand.shape)) for operand in operands))
         assert_never(s)
 
     def pigment(p: Pigment) -> Pigment:

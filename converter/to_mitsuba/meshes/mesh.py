@@ -3,7 +3,7 @@
 from collections.abc import Iterable
 from dataclasses import dataclass
 from pathlib import Path
-from typing import TYPE_CHECKING, Literal
+from typing import TYPE_CHECKING, Literal, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,9 +50,22 @@ class PolyhedronMesh:
         return trimesh.Trimesh(self.vertices, self.triangles, process=False)
 
 
-def write_ply(mesh: PolyhedronMesh, path: Path) -> None:
-    """Write a binary PLY file: positions as float32, no normals, triangles in the mesh's order."""
-    path.write_bytes(mesh.to_trimesh().export(file_type="ply", vertex_normal=False))
+class Mesh(Protocol):
+    """What has triangles."""
+
+    def to_trimesh(self) -> "trimesh.Trimesh":
+        """As a trimesh, vertices and triangles in the same order."""
+        ...
+
+
+def write_ply(mesh: Mesh, path: Path) -> bool:
+    """Write a binary PLY file: positions as float32, triangles in the mesh's order; return whether it has normals.
+
+    Those of its vertices are written if it has them; else each triangle has its own.
+    """
+    smooth = hasattr(mesh, "normals")
+    path.write_bytes(mesh.to_trimesh().export(file_type="ply", vertex_normal=smooth))
+    return smooth
 
 
 def listed(indices: Iterable[int]) -> str:

@@ -1,10 +1,10 @@
 """What each kind of shape has to answer.
 
-A shape is made of primitives, the smooth pieces of its surface: a sphere, or a polyhedron's planes. Each is a row of
-four numbers, and primitives are numbered through all shapes of a scene.
+A shape is made of primitives, the smooth pieces of its surface: a sphere, a quadric, or a polyhedron's planes. Each is
+a row of four numbers, or several, and its index that of the first in the table of all rows of a scene.
 """
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from typing import Any, NamedTuple, Protocol
 
@@ -18,12 +18,12 @@ Row = tuple[float, float, float, float]
 class Shape(NamedTuple):
     """A shape that has been read."""
 
-    given: list[Row]
-    """Its primitives as the description has them."""
+    given: Sequence[Sequence[float]]
+    """Its primitives as the description has them, each with as many numbers as any."""
     rows: list[Row]
-    """The same as kernels read them."""
+    """The same as kernels read them, each with as many rows as any."""
     pieces: tuple[int | None, ...]
-    """What the scene calls each: a plane's index, None if there is one piece only."""
+    """What the scene calls the primitive of each row: a plane's index, None if there is one primitive only."""
     box: tuple[Vector, Vector] | None
     """Around it; None where there is none."""
     extent: float = 0.0
@@ -33,17 +33,17 @@ class Shape(NamedTuple):
 
 
 class Rows(Protocol):
-    """The primitives of a shape, or of each ray's own shape, in a kernel."""
+    """The rows of a shape or a primitive, or of one for each ray, in a kernel."""
 
     width: int
     """Of arrays that differ from row to row."""
 
-    def primitive(self) -> Any:
-        """The index of the first (UInt32)."""
+    def primitive(self, k: int = 0) -> Any:
+        """The index of the row k after the first, if a primitive begins there (UInt32)."""
         ...
 
-    def row(self) -> Any:
-        """The first row (Vector4)."""
+    def row(self, k: int = 0) -> Any:
+        """The row k after the first (Vector4)."""
         ...
 
     def fold(self, step: Callable[[Any, Any, Any], Any], state: Any) -> Any:
@@ -58,8 +58,8 @@ class Contact(NamedTuple):
     """Which of those that were asked for."""
     normal: Vector
     """The outward unit normal there."""
-    radius: float
-    """That of the sphere; 0 of a plane."""
+    curvature: float
+    """How much the normal turns along a unit of length, at most; 0 of a plane."""
 
 
 @dataclass
@@ -75,6 +75,10 @@ class SurfacePoint:
 class ShapeKind(Protocol):
     """A module for one kind of shapes."""
 
+    ROWS: int
+    """Of each primitive."""
+    FACETED: bool
+    """Whether a shape has several primitives, planes, and a point of one may lie beside the shape."""
     CONVEX: bool
     """Whether a ray that leaves a shape never meets it again."""
     BOUNDED_FIRST: bool
@@ -88,12 +92,16 @@ class ShapeKind(Protocol):
         """
         ...
 
+    def turned(self, rows: tuple[Row, ...]) -> tuple[Row, ...] | None:
+        """The rows of a primitive whose inside is another's outside, if there are such."""
+        ...
+
     def contacts(self, point: Any, rows: Any) -> list[Contact]:
-        """Which of some primitives, (n, 4) as given, a point (3,) lies on, in their order."""
+        """Which of some primitives, (n, m) as given, a point (3,) lies on, in their order."""
         ...
 
     def contains(self, point: Any, rows: Any) -> bool:
-        """Whether a point that lies on one of a shape's primitives, as given, is on the shape."""
+        """Whether a shape, its primitives as given, contains a point, as far as decimals can say."""
         ...
 
     # ---- In a kernel: `own` where the ray starts on the shape, `reach` the largest coordinate of its origin
@@ -106,6 +114,6 @@ class ShapeKind(Protocol):
         """Where rays cross a shape by the format's rules for ties."""
         ...
 
-    def surface_at(self, row: Any, p: Any, ray: Ray, own: Any, reach: Any) -> SurfacePoint:
-        """The point of a primitive (its row, a Vector4) nearest to a point near it (Point3) that a ray has met."""
+    def surface_at(self, rows: Rows, p: Any, ray: Ray, own: Any, reach: Any) -> SurfacePoint:
+        """The point of a primitive nearest to a point near it (Point3) that a ray has met."""
         ...

@@ -15,6 +15,8 @@ from mitsuba_plugins.intersection.rounding import decides_ties, epsilon, most_bl
 from mitsuba_plugins.intersection.shapes.kind import Contact, Row, Rows, Shape, SurfacePoint
 from native_tracer.incidence import surfaces_at, within
 
+ROWS = 1
+FACETED = True
 CONVEX = True
 BOUNDED_FIRST = True
 
@@ -38,8 +40,13 @@ def contacts(point: Any, rows: Any) -> list[Contact]:
     return found
 
 
+def turned(rows: tuple[Row, ...]) -> tuple[Row, ...] | None:
+    """The half-space beyond."""
+    return tuple((-a, -b, -c, -d) for a, b, c, d in rows)
+
+
 def contains(point: Any, rows: Any) -> bool:
-    """Whether it lies on a face, and not in the face's plane beside it."""
+    """In all half-spaces, or on their borders."""
     return within(point, rows)
 
 
@@ -152,13 +159,13 @@ def passage_by_rules(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
         near_primitive=span.enter_plane,
         far_primitive=span.leave_plane,
         meets=~span.outside & ~(span.enter - span.leave > span.enter_error + span.leave_error),
-        near_error=span.enter_error,
-        far_error=span.leave_error,
+        error=lambda enters, _: dr.select(enters, span.enter_error, span.leave_error),
     )
 
 
-def surface_at(row: Any, p: Any, ray: Ray, own: Any, reach: Any) -> SurfacePoint:
+def surface_at(rows: Rows, p: Any, ray: Ray, own: Any, reach: Any) -> SurfacePoint:
     """Along the normal."""
+    row = rows.row()
     n = type(ray.d)(row.xyz)
     return SurfacePoint(type(p)(p - n * (dr.dot(n, p) + row.w)), n, surface_error(row, reach), type(row.w)(dr.inf))
 

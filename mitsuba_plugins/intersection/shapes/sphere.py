@@ -1,5 +1,6 @@
 """A sphere: its centre and radius."""
 
+import math
 from typing import Any
 
 import drjit as dr
@@ -9,9 +10,11 @@ from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.intersection.passages import Passage
 from mitsuba_plugins.intersection.rays import Ray, largest
 from mitsuba_plugins.intersection.rounding import epsilon, most_blur
-from mitsuba_plugins.intersection.shapes.kind import Contact, Rows, Shape, SurfacePoint
+from mitsuba_plugins.intersection.shapes.kind import Contact, Row, Rows, Shape, SurfacePoint
 from native_tracer.incidence import surfaces_at
 
+ROWS = 1
+FACETED = False
 CONVEX = True
 BOUNDED_FIRST = False
 
@@ -31,13 +34,19 @@ def contacts(point: Any, rows: Any) -> list[Contact]:
         # The square of a length may neither overflow nor vanish.
         arm = arm / np.abs(arm).max()
         x, y, z = (arm / np.linalg.norm(arm)).tolist()
-        found.append(Contact(row, (x, y, z), float(rows[row, 3])))
+        found.append(Contact(row, (x, y, z), 1 / float(rows[row, 3])))
     return found
 
 
+def turned(rows: tuple[Row, ...]) -> tuple[Row, ...] | None:
+    """There are none that are hollow."""
+    return None
+
+
 def contains(point: Any, rows: Any) -> bool:
-    """It has no other points."""
-    return True
+    """By the distance from the centre, or on it."""
+    ((x, y, z, radius),) = rows
+    return math.dist(point, (x, y, z)) <= radius or bool(contacts(point, rows))
 
 
 def passage(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
@@ -62,20 +71,20 @@ def passage_by_rules(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
     near = dr.select(starts, -dr.inf, near)
     far = dr.select(starts, dr.select(far > ray.t_min, -2 * dr.dot(f, ray.d), dr.inf), far)
 
-    def distance_error(t: Any) -> Any:
+    def distance_error(_: Any, t: Any) -> Any:
         arm = f + t * ray.d
         return quotient((error + t * ray.spread) * radius, dr.abs(dr.dot(arm, ray.d)))
 
-    errors = {"near_error": distance_error(near), "far_error": distance_error(far)}
-    return Passage(near, far, rows.primitive(), rows.primitive(), **errors)
+    return Passage(near, far, rows.primitive(), rows.primitive(), error=distance_error)
 
 
-def surface_at(row: Any, p: Any, ray: Ray, own: Any, reach: Any) -> SurfacePoint:
+def surface_at(rows: Rows, p: Any, ray: Ray, own: Any, reach: Any) -> SurfacePoint:
     """Along the radius.
 
     Where the point is the centre, or so near that the square of its distance is 0, the normal is along the ray: if a
     sphere is too small beside its distance from where the ray starts, no more is known of a point on it.
     """
+    row = rows.row()
     center, radius = type(ray.o)(row.xyz), row.w
     within = own | (dr.squared_norm(ray.o - center) < dr.square(radius))
     arm = p - center

@@ -5,13 +5,18 @@
 
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/pair.h>
+#include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
+#include <algorithm>
+#include <array>
 #include <cmath>
 #include <stdexcept>
 #include <string>
 #include <utility>
 
+#include "shapes/simplified_csg.h"
 #include "tracing/description.h"
 
 namespace nb = nanobind;
@@ -23,6 +28,7 @@ using whitted::Triple;
 namespace {
 
 using Planes = std::vector<Quadruple>;
+using Coefficients = std::array<double, 10>;
 using PlaneBuffer = nb::ndarray<const double, nb::c_contig, nb::device::cpu>;
 using TexelBuffer = nb::ndarray<const float, nb::c_contig, nb::device::cpu>;
 
@@ -56,9 +62,21 @@ void check_index(int index, std::size_t size, const char* what) {
     }
 }
 
-int add_polyhedron(SceneDescription& scene, int pigment, int finish, Planes planes) {
+void check_object(const SceneDescription& scene, int pigment, int finish) {
     check_index(pigment, scene.pigments.size(), "pigment");
     check_index(finish, scene.finishes.size(), "finish");
+}
+
+int add_object(SceneDescription& scene, int pigment, int finish, whitted::ShapeDescription shape) {
+    check_object(scene, pigment, finish);
+    return append(scene.objects, whitted::ObjectDescription{pigment, finish, std::move(shape)});
+}
+
+whitted::SphereDescription sphere_of(const Triple& center, double radius) {
+    return {finite(center, "center"), positive(radius, "radius")};
+}
+
+whitted::PolyhedronDescription polyhedron_of(Planes planes) {
     if (planes.empty()) {
         throw std::invalid_argument("a polyhedron needs at least one plane");
     }
@@ -68,8 +86,63 @@ int add_polyhedron(SceneDescription& scene, int pigment, int finish, Planes plan
             throw std::invalid_argument("a plane's normal is zero");
         }
     }
-    return append(scene.objects,
-                  whitted::ObjectDescription{pigment, finish, whitted::PolyhedronDescription{std::move(planes)}});
+    return {std::move(planes)};
+}
+
+whitted::QuadricDescription quadric_of(const Coefficients& coefficients) {
+    finite(coefficients, "a quadric");
+    if (std::all_of(coefficients.begin(), coefficients.end() - 1, [](double number) { return number == 0; })) {
+        throw std::invalid_argument("a quadric's numbers but the last are all 0");
+    }
+    return {coefficients};
+}
+
+whitted::LeafDescription leaf_of(const std::string& kind, nb::handle numbers) {
+    if (kind == "sphere") {
+        const auto [x, y, z, radius] = nb::cast<Quadruple>(numbers);
+        return sphere_of({x, y, z}, radius);
+    }
+    if (kind == "polyhedron") {
+        return polyhedron_of(nb::cast<Planes>(numbers));
+    }
+    if (kind == "quadric") {
+        return quadric_of(nb::cast<Coefficients>(numbers));
+    }
+    throw std::invalid_argument("a leaf is a 'sphere', a 'polyhedron' or a 'quadric', not '" + kind + "'");
+}
+
+void check_program(const std::vector<int>& program, std::size_t leaves) {
+    std::size_t size = 0;  // of the stack
+    for (const int step : program) {
+        if (step >= 0) {
+            check_index(step, leaves, "leaf");
+            ++size;
+        } else if (step < whitted::CsgDescription::intersect) {
+            throw std::invalid_argument("a csg has no operation " + std::to_string(step));
+        } else if (size-- < 2) {
+            throw std::invalid_argument("an operation of a csg lacks an operand");
+        }
+        if (size > whitted::deepest_csg_stack) {
+            throw std::invalid_argument("a csg is nested too deep");
+        }
+    }
+    if (size != 1) {
+        throw std::invalid_argument("a csg's program has to leave one value");
+    }
+}
+
+int add_csg(SceneDescription& scene, int pigment, int finish,
+            const std::vector<std::pair<std::string, nb::object>>& leaves, const std::vector<int>& program) {
+    check_object(scene, pigment, finish);
+    if (leaves.size() > whitted::most_csg_leaves) {
+        throw std::invalid_argument("a csg has " + std::to_string(whitted::most_csg_leaves) + " leaves at most");
+    }
+    check_program(program, leaves.size());
+    whitted::CsgDescription csg{{}, program};
+    for (const auto& [kind, numbers] : leaves) {
+        csg.leaves.push_back(leaf_of(kind, numbers));
+    }
+    return add_object(scene, pigment, finish, whitted::simplified(csg));
 }
 
 int add_texmap(SceneDescription& scene, int width, int height, const TexelBuffer& texels, const Quadruple& p0,
@@ -141,17 +214,17 @@ void bind_scene(nb::module_& module) {
         .def(
             "add_sphere",
             [](SceneDescription& scene, int pigment, int finish, const Triple& center, double radius) {
-                check_index(pigment, scene.pigments.size(), "pigment");
-                check_index(finish, scene.finishes.size(), "finish");
-                return append(scene.objects,
-                              whitted::ObjectDescription{
-                                  pigment, finish,
-                                  whitted::SphereDescription{finite(center, "center"), positive(radius, "radius")}});
+                return add_object(scene, pigment, finish, sphere_of(center, radius));
             },
             "pigment"_a, "finish"_a, "center"_a, "radius"_a, "Add a sphere, and return its index.")
-        .def("add_polyhedron", &add_polyhedron, "pigment"_a, "finish"_a, "planes"_a,
-             "Add a convex polyhedron, and return its index; a plane is (a, b, c, d), inside where\n"
-             "a x + b y + c z + d <= 0. `planes` may be a buffer of float64 too.")
+        .def(
+            "add_polyhedron",
+            [](SceneDescription& scene, int pigment, int finish, Planes planes) {
+                return add_object(scene, pigment, finish, polyhedron_of(std::move(planes)));
+            },
+            "pigment"_a, "finish"_a, "planes"_a,
+            "Add a convex polyhedron, and return its index; a plane is (a, b, c, d), inside where\n"
+            "a x + b y + c z + d <= 0. `planes` may be a buffer of float64 too.")
         .def(
             "add_polyhedron",
             [](SceneDescription& scene, int pigment, int finish, const PlaneBuffer& numbers) {
@@ -162,13 +235,25 @@ void bind_scene(nb::module_& module) {
                 for (std::size_t i = 0; i < numbers.size(); ++i) {
                     planes[i / 4][i % 4] = numbers.data()[i];
                 }
-                return add_polyhedron(scene, pigment, finish, std::move(planes));
+                return add_object(scene, pigment, finish, polyhedron_of(std::move(planes)));
             },
-            "pigment"_a, "finish"_a, "planes"_a);
+            "pigment"_a, "finish"_a, "planes"_a)
+        .def(
+            "add_quadric",
+            [](SceneDescription& scene, int pigment, int finish, const Coefficients& coefficients) {
+                return add_object(scene, pigment, finish, quadric_of(coefficients));
+            },
+            "pigment"_a, "finish"_a, "coefficients"_a,
+            "Add a quadric, and return its index; the coefficients are A to J, inside where\n"
+            "A x^2 + B y^2 + C z^2 + D x y + E x z + F y z + G x + H y + I z + J <= 0.")
+        .def("add_csg", &add_csg, "pigment"_a, "finish"_a, "leaves"_a, "program"_a,
+             "Add constructive solid geometry, and return its index. A leaf is ('sphere', (x, y, z, radius)),\n"
+             "('polyhedron', planes) or ('quadric', coefficients); the program is a Boolean expression in postfix\n"
+             "order: k >= 0 pushes leaf k, -1 unites the last two, -2 subtracts, -3 intersects them.");
 }
 
 NB_MODULE(_core, module) {
-    module.doc() = "The native tracer: Whitted's shading of spheres and convex polyhedra.";
+    module.doc() = "The native tracer: Whitted's shading of spheres, convex polyhedra, quadrics and csg.";
     bind_scene(module);
     bind_render(module);
     bind_halfspaces(module);

@@ -20,11 +20,15 @@ struct Bounds {
 // as unbounded if it goes on for 2^24 times as far from the origin as its planes are.
 std::optional<Bounds> bounds_of(const SphereDescription& sphere);
 std::optional<Bounds> bounds_of(const PolyhedronDescription& polyhedron);
+std::optional<Bounds> bounds_of(const QuadricDescription& quadric);
+std::optional<Bounds> bounds_of(const CsgDescription& csg);
 
 // The cost of a ray's test, in tests of spheres. Two planes of a polyhedron cost about as much as one.
 inline double cost_of(const SphereDescription&) { return 1; }
 inline double cost_of(const PolyhedronDescription& polyhedron) {
     return 0.5 * static_cast<double>(polyhedron.planes.size());
 }
+inline double cost_of(const QuadricDescription&) { return 2; }
+double cost_of(const CsgDescription& csg);
 
 }  // namespace whitted

@@ -8,6 +8,7 @@
 #include <variant>
 
 #include "search/bounds.h"
+#include "shapes/csg_plan.h"
 
 namespace whitted {
 
@@ -38,35 +39,73 @@ double epsilon_of(Precision precision) {
                                           : std::numeric_limits<double>::epsilon();
 }
 
+// Boxes of items, and what is common to all.
+struct Boxes {
+    std::vector<Box> boxes;
+    std::vector<std::uint32_t> items;
+    double growth = 1, reach = 0;
+
+    // False if the item has to stay outside a tree.
+    bool add(std::uint32_t item, const std::optional<Bounds>& bounds, double epsilon) {
+        if (!bounds || 32 * epsilon * bounds->growth > most_blur) {
+            return false;
+        }
+        boxes.push_back(bounds->box);
+        items.push_back(item);
+        growth = std::max(growth, bounds->growth);
+        reach = std::max(reach, bounds->reach);
+        for (std::size_t k = 0; k < 3; ++k) {
+            reach = std::max({reach, -bounds->box.low[k], bounds->box.high[k]});
+        }
+        return true;
+    }
+
+    Bvh tree(std::uint32_t items_in_a_leaf) const {
+        Bvh tree = build_bvh(boxes, items_in_a_leaf);
+        for (std::uint32_t& item : tree.order) {
+            item = items[item];
+        }
+        return tree;
+    }
+};
+
 }  // namespace
+
+void add_leaf_tree(const CsgDescription& csg, int digits, CsgPlan& plan) {
+    constexpr std::size_t fewest = 6;
+    Boxes boxes;
+    const double epsilon =
+        digits < std::numeric_limits<double>::digits ? epsilon_of(Precision::single) : epsilon_of(Precision::normal);
+    for (std::size_t i = 0; i < csg.leaves.size(); ++i) {
+        const std::optional<Bounds> found =
+            csg.leaves.size() < fewest ? std::nullopt
+                                       : std::visit([](const auto& leaf) { return bounds_of(leaf); }, csg.leaves[i]);
+        if (!boxes.add(static_cast<std::uint32_t>(i), found, epsilon)) {
+            plan.apart.push_back(static_cast<int>(i));
+        }
+    }
+    plan.growth = boxes.growth;
+    plan.reach = boxes.reach;
+    plan.tree = boxes.tree(2);
+}
 
 SearchPlan plan_search(const SceneDescription& scene, Search search, Precision precision) {
     SearchPlan plan;
     const bool wants_tree =
         search == Search::bvh || (search == Search::automatic && cost_of(scene) >= least_cost_of_a_tree);
-    std::vector<Box> boxes;
-    std::vector<std::uint32_t> objects;
+    Boxes boxes;
     for (std::size_t i = 0; i < scene.objects.size(); ++i) {
         std::optional<Bounds> found;
         if (wants_tree) {
             found = std::visit([](const auto& shape) { return bounds_of(shape); }, scene.objects[i].shape);
         }
-        if (!found || 32 * epsilon_of(precision) * found->growth > most_blur) {
+        if (!boxes.add(static_cast<std::uint32_t>(i), found, epsilon_of(precision))) {
             plan.apart.push_back(static_cast<int>(i));
-            continue;
-        }
-        boxes.push_back(found->box);
-        objects.push_back(static_cast<std::uint32_t>(i));
-        plan.growth = std::max(plan.growth, found->growth);
-        plan.reach = std::max(plan.reach, found->reach);
-        for (std::size_t k = 0; k < 3; ++k) {
-            plan.reach = std::max({plan.reach, -found->box.low[k], found->box.high[k]});
         }
     }
-    plan.tree = build_bvh(boxes, leaf_size);
-    for (std::uint32_t& item : plan.tree.order) {
-        item = objects[item];
-    }
+    plan.growth = boxes.growth;
+    plan.reach = boxes.reach;
+    plan.tree = boxes.tree(leaf_size);
     return plan;
 }
 

@@ -19,6 +19,10 @@ struct SearchPlan {
     double reach = 0;  // no coordinate in the tree is larger, nor any plane that bounds its objects farther away
 };
 
+// Adds a tree over the boxes of a csg's leaves to its plan, where they are many; for numbers with so many digits.
+struct CsgPlan;
+void add_leaf_tree(const CsgDescription& csg, int digits, CsgPlan& plan);
+
 SearchPlan plan_search(const SceneDescription& scene, Search search, Precision precision);
 
 }  // namespace whitted

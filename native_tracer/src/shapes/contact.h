@@ -15,15 +15,16 @@ template <typename Real>
 struct Contact {
     int object, primitive;
     Vector<Real> outward;  // the surface's unit normal there
+    Real curvature;        // by how much it turns along a unit of length, at most
     bool flat;             // it is part of a plane
     bool on_body;          // the point lies on the object, and not only in the plane of a face beside the face
+    int body;              // the first primitive of the convex shape, or the quadric, that this is part of; -1: none
 
-    // Whether rays that lead to the point cross the object there, and no sooner: a plane wherever they do, a sphere
-    // where they reach the point from within, or from without by its near side.
+    // Whether rays that lead to the point cross the object there, and no sooner: a plane wherever they do; of a surface
+    // that they meet twice, once from without and once from within, it is the place of the same kind.
     Mask<Real> is_at(const Crossing<Real>& crossing, const Vector<Lanes<Real>>& direction) const {
-        const Mask<Real> arrives =
-            crossing.inside | (dot(Vector<Lanes<Real>>(outward), direction) < Lanes<Real>(Real(0)));
-        return (crossing.primitive == Indices<Real>(primitive)) & arrives;
+        const Mask<Real> from_without = dot(Vector<Lanes<Real>>(outward), direction) < Lanes<Real>(Real(0));
+        return (crossing.primitive == Indices<Real>(primitive)) & (from_without ^ crossing.inside);
     }
 };
 
@@ -31,8 +32,8 @@ struct Contact {
 // first.
 template <typename Real>
 struct EyeContact {
-    int object = -1, primitive = -1;
-    std::vector<Vector<Real>> outward;  // of all the object's primitives that the eye lies on
+    int object = -1, primitive = -1, body = -1;
+    std::vector<Vector<Real>> outward;  // of all the body's primitives that the eye lies on
     Real curvature = 0;
 
     // Rays along a plane, too, for a body is closed; not those that touch a sphere. Eye and directions may be off.

@@ -10,6 +10,8 @@
 
 #include "shapes/contact.h"
 #include "shapes/crossing.h"
+#include "shapes/sight.h"
+#include "shapes/start.h"
 #include "tracing/camera.h"
 #include "tracing/description.h"
 #include "tracing/incidence.h"
@@ -42,21 +44,6 @@ Plane<Real> plane_of(const Quadruple& plane) {
     return {normal / length(normal), offset, slack * std::abs(offset), slack};
 }
 
-// A convex polyhedron has no sight of its own: it is tested from anywhere.
-template <typename Real>
-struct AlwaysInSight {
-    template <typename... Arguments>
-    explicit AlwaysInSight(const Arguments&...) {}
-    template <typename... Arguments>
-    bool may_be_hit(const Arguments&...) const {
-        return true;
-    }
-    template <typename... Arguments>
-    bool may_block(const Arguments&...) const {
-        return true;
-    }
-};
-
 template <typename Real>
 class ConvexPolyhedron {
  public:
@@ -78,18 +65,13 @@ class ConvexPolyhedron {
 
     int object() const { return object_; }
     int piece(int primitive) const { return primitive - first_primitive_; }
-    Real curvature() const { return 0; }
-    template <typename T>
-    T error_at(int primitive, const T& reach) const {
-        const Plane<Real>& plane = plane_at(primitive);
-        return T(plane.error) + T(plane.error_by_reach) * reach;
-    }
+    Real error_at(int primitive, Real reach, const Vector<Real>&) const { return error_of(primitive, reach); }
 
     // The ray is inside all half-spaces between the largest t at which it enters one and the smallest at which it
     // leaves one. Planes may be few and close no volume: either bound may stay infinite. Haines, "Fast Ray-Convex
-    // Polyhedron Intersection", Graphics Gems II, 1991.
+    // Polyhedron Intersection", Graphics Gems II, 1991. Out of line, so that the loop has all registers to itself.
     template <bool which_primitive>
-    [[gnu::always_inline]] bool intersect(const Rays<Real>& rays, Crossing<Real>& crossing, Mask<Real>& close) const {
+    [[gnu::noinline]] bool intersect(const Rays<Real>& rays, Crossing<Real>& crossing, Mask<Real>& close) const {
         const L zero = Real(0);
         const L infinity = std::numeric_limits<Real>::infinity();
         const Mask<Real> starts_here = rays.object == Indices<Real>(object_);
@@ -102,11 +84,11 @@ class ConvexPolyhedron {
         passage.misses = elsewhere;
         L between_planes = infinity;
         if (!any(from_within)) {
-            pass<Start::elsewhere, which_primitive>(rays, passage, between_planes, close);
+            pass<Origin::elsewhere, which_primitive>(rays, passage, between_planes, close);
         } else if (which_primitive && all(from_within)) {
-            pass<Start::within, which_primitive>(rays, passage, between_planes, close);
+            pass<Origin::within, which_primitive>(rays, passage, between_planes, close);
         } else {
-            pass<Start::mixed, which_primitive>(rays, passage, between_planes, close);
+            pass<Origin::mixed, which_primitive>(rays, passage, between_planes, close);
         }
         // Later planes only bring the ends of the passage farther apart.
         const L gap = passage.near - passage.far;
@@ -125,6 +107,54 @@ class ConvexPolyhedron {
         return true;
     }
 
+    // The passage of rays through the polyhedron; of those that start on a plane `start` knows the side, on which they
+    // stay. Returns the least distance between two planes that rays meet one after the other.
+    L pass(const Rays<Real>& rays, const Start<Real>& start, const Side* sides, Passage<Real>& passage) const {
+        const L zero = Real(0);
+        passage.misses = Mask<Real>::none();
+        passage.near_primitive = first_primitive_;
+        passage.far_primitive = first_primitive_;
+        Mask<Real> from_within = Mask<Real>::none();
+        L between_planes = std::numeric_limits<Real>::infinity();
+        for (int k = 0; k < plane_count(); ++k) {
+            const Plane<Real>& plane = planes_[static_cast<std::size_t>(k)];
+            const Vector<L> normal(plane.normal);
+            const L slope = dot(normal, rays.direction) + zero;  // never -0, see above
+            const L height = dot(normal, rays.origin) + L(plane.offset);
+            const L t = -height / slope;
+            const Indices<Real> primitive = first_primitive_ + k;
+            const Mask<Real> entering = slope < zero;
+            Mask<Real> leaves_first = ~entering & (t < passage.far);
+            Mask<Real> enters_last = entering & (t > passage.near);
+            between_planes = min(abs(t - select(entering, passage.near, passage.far)), between_planes);
+            const Mask<Real> along = abs(slope) <= rays.spread;
+            if (decides_ties<Real> && any(along)) [[unlikely]] {
+                const L error = rays.t_min + error_of(first_primitive_ + k, rays.reach);
+                passage.misses |= along & (height > error) & ~start.on(sides[k]);
+                leaves_first &= ~along;
+                enters_last &= ~along;
+            }
+            if (start.any) {
+                const Mask<Real> here = start.on(sides[k]);
+                const Mask<Real> within = here & start.within(sides[k]);
+                from_within |= within & (start.primitive == primitive);
+                passage.misses |= here & ~within;
+                leaves_first &= ~here;
+                enters_last &= ~here;
+            }
+            passage.far = select(leaves_first, t, passage.far);
+            passage.far_primitive = select(leaves_first, primitive, passage.far_primitive);
+            passage.near = select(enters_last, t, passage.near);
+            passage.near_primitive = select(enters_last, primitive, passage.near_primitive);
+            if (all((passage.near > passage.far) | (passage.far < rays.t_min) | passage.misses) && !start.any) {
+                break;
+            }
+        }
+        passage.near = select(from_within, L(-std::numeric_limits<Real>::infinity()), passage.near);
+        passage.misses |= passage.near > passage.far;
+        return between_planes;
+    }
+
     // A ray along a plane neither enters nor leaves there, and is inside or outside by its height; one that meets an
     // edge hits, so that bodies which share the edge leave no gap.
     [[gnu::noinline]] bool intersect_by_rules(const Rays<Real>& rays, Crossing<Real>& crossing) const {
@@ -141,7 +171,7 @@ class ConvexPolyhedron {
             const L slope = dot(normal, rays.direction);
             const L height = dot(normal, rays.origin) + L(plane.offset);
             const Indices<Real> primitive = first_primitive_ + k;
-            const L error = rays.t_min + error_at(first_primitive_ + k, rays.reach);
+            const L error = rays.t_min + error_of(first_primitive_ + k, rays.reach);
             const L t = select(abs(height) <= error, zero, -height / slope);
             const L t_error = (error + abs(t) * rays.spread) / abs(slope);
 
@@ -171,7 +201,7 @@ class ConvexPolyhedron {
         for (int k = first_primitive_; k < hit; ++k) {
             const Plane<Real>& plane = plane_at(k);
             const Real slope = dot(plane.normal, direction);
-            const Real error = blur(rays, lane, error_at(k, rays.reach[lane]), t) + t_error * std::abs(slope);
+            const Real error = blur(rays, lane, error_of(k, rays.reach[lane]), t) + t_error * std::abs(slope);
             const bool meets = inside ? slope > rays.spread[lane] : slope < -rays.spread[lane];
             if (meets && std::abs(dot(plane.normal, p) + plane.offset) <= error &&
                 !(starts_here && rays.primitive[lane] == k)) {
@@ -186,8 +216,8 @@ class ConvexPolyhedron {
     SurfacePoint<Real> surface_at(int primitive, const Vector<L>& near, const Rays<Real>& rays, Mask<Real>) const {
         const Plane<Real>& plane = plane_at(primitive);
         const Vector<L> normal(plane.normal);
-        return {near - (dot(normal, near) + L(plane.offset)) * normal, normal, error_at(primitive, rays.reach),
-                curvature()};
+        return {near - (dot(normal, near) + L(plane.offset)) * normal, normal, error_of(primitive, rays.reach),
+                L(Real(0))};
     }
 
     template <typename Visit>
@@ -195,18 +225,21 @@ class ConvexPolyhedron {
         for (int k = 0; k < plane_count(); ++k) {
             const auto index = static_cast<std::size_t>(k);
             if (lies_on(polyhedron.planes[index], point)) {
-                visit(Contact<Real>{object_, first_primitive_ + k, planes_[index].normal, true,
-                                    lies_within(polyhedron.planes, point)});
+                visit(Contact<Real>{object_, first_primitive_ + k, planes_[index].normal, Real(0), true,
+                                    lies_within(polyhedron.planes, point), first_primitive_});
             }
         }
     }
 
+    // The unit normal and the offset of each plane.
+    const std::vector<Plane<Real>>& planes() const { return planes_; }
+
  private:
     // What is known of where rays start.
-    enum class Start { elsewhere, mixed, within };
+    enum class Origin { elsewhere, mixed, within };
 
     // The passage of rays that are far from ties, faster; adds those that are not to `close`.
-    template <Start start, bool which_primitive>
+    template <Origin origin, bool which_primitive>
     [[gnu::always_inline]] void pass(const Rays<Real>& rays, Passage<Real>& passage, L& between_planes,
                                      Mask<Real>& close) const {
         const L zero = Real(0);
@@ -229,16 +262,16 @@ class ConvexPolyhedron {
             const Mask<Real> entering = slope < zero;
             if constexpr (which_primitive) {
                 // No number before the first plane.
-                const L before = start == Start::within ? passage.far : select(entering, passage.near, passage.far);
+                const L before = origin == Origin::within ? passage.far : select(entering, passage.near, passage.far);
                 between_planes = min(abs(t - before), between_planes);
             }
             Mask<Real> leaves_first = ~entering & (t < passage.far);
-            if constexpr (start != Start::elsewhere) {
+            if constexpr (origin != Origin::elsewhere) {
                 leaves_first &= ~(from_within & (rays.primitive == primitive));
             }
             passage.far = select(leaves_first, t, passage.far);
             passage.far_primitive = select(leaves_first, primitive, passage.far_primitive);
-            if constexpr (start == Start::within) {
+            if constexpr (origin == Origin::within) {
                 continue;
             }
             const Mask<Real> enters_last = entering & (t > passage.near);
@@ -246,7 +279,7 @@ class ConvexPolyhedron {
             passage.near_primitive = select(enters_last, primitive, passage.near_primitive);
 
             Mask<Real> misses = (passage.near > passage.far) | (passage.far < rays.t_min);
-            if constexpr (start == Start::mixed) {
+            if constexpr (origin == Origin::mixed) {
                 misses &= ~from_within;
             }
             passage.misses |= misses;
@@ -254,6 +287,13 @@ class ConvexPolyhedron {
                 return;
             }
         }
+    }
+
+    // How far a primitive may be off where rays of that reach are compared with it, see Rays.
+    template <typename T>
+    T error_of(int primitive, const T& reach) const {
+        const Plane<Real>& plane = plane_at(primitive);
+        return T(plane.error) + T(plane.error_by_reach) * reach;
     }
 
     int plane_count() const { return static_cast<int>(planes_.size()); }

@@ -1,10 +1,11 @@
 // Where rays cross a shape, and how far that may be off.
 //
 // A ray never hits what it starts on by a rounding error. What it starts on is known - object, primitive, and whether
-// the ray travels inside that object - and all shapes are convex: a ray that leaves one outward cannot meet it again,
-// and one that travels inside meets only its far side. A ray bound for another object has to travel farther than t_min,
-// a bound of its origin's rounding error, so that two surfaces that touch do not shade each other at random. Nothing is
-// compared with an absolute constant: a scene in millimetres is drawn as the same scene in kilometres.
+// the ray travels inside that object - and a line meets a primitive at most twice: of a convex one, a ray that leaves
+// it outward cannot meet it again, and one that travels inside meets only its far side; of another, the place where the
+// ray starts is taken out of the equation. A ray bound for another object has to travel farther than t_min, a bound of
+// its origin's rounding error, so that two surfaces that touch do not shade each other at random. Nothing is compared
+// with an absolute constant: a scene in millimetres is drawn as the same scene in kilometres.
 //
 // Waechter and Binder, "A Fast and Robust Method for Avoiding Self-Intersection", Ray Tracing Gems, 2019, ch. 6.
 // Pharr, Jakob and Humphreys, "Physically Based Rendering", 4th ed., 2023, section 6.8.
@@ -19,8 +20,9 @@
 
 namespace whitted::WHITTED_ISA {
 
-// The up to two places where lines meet a shape, near and far, and what they meet there: they are in it between them.
-// Where there is none it is infinite. Of rays that start on the shape from within, `far` is the other end.
+// The up to two places where lines meet a primitive or a convex shape, near and far, and what they meet there: they are
+// in it between them, or outside it where it is `inverted`. Where there is none it is infinite. Of rays whose start on
+// the shape is known, `far` is the other end. Lines that miss it are nowhere in it, or wholly where it is inverted.
 template <typename Real>
 struct Passage {
     Lanes<Real> near = -std::numeric_limits<Real>::infinity();
@@ -28,6 +30,7 @@ struct Passage {
     Indices<Real> near_primitive = -1;
     Indices<Real> far_primitive = -1;
     Mask<Real> misses;
+    Mask<Real> inverted = Mask<Real>::none();
 };
 
 // Where rays cross one object.
@@ -38,7 +41,8 @@ struct Crossing {
     Mask<Real> inside;  // the surface is met from within
 };
 
-// Which of the two counts for rays that have the given passage through a shape; those `from_within` start on it.
+// Which of the two counts for rays that have the given passage through a shape; those `from_within` start on it, and
+// only the other end is ahead.
 template <typename Real>
 [[gnu::always_inline]] inline Crossing<Real> first_crossing(const Passage<Real>& passage, const Rays<Real>& rays,
                                                             Mask<Real> from_within) {
@@ -57,7 +61,7 @@ struct SurfacePoint {
     Vector<Lanes<Real>> point;
     Vector<Lanes<Real>> outward;  // the unit normals there
     Lanes<Real> error;            // how far the primitive may be off
-    Real curvature;               // by how much the normal turns along a unit of length
+    Lanes<Real> curvature;        // by how much the normal turns along a unit of length, at most
 };
 
 // How far a ray and a surface may be off from one another at distance t, where the surface itself may be off by
@@ -71,8 +75,9 @@ Real blur(const Rays<Real>& rays, int lane, Real error, Real t) {
 template <typename Shape, typename Real>
 Real distance_error(const Shape& shape, const Rays<Real>& rays, int lane, int primitive, Real t) {
     const Vector<Real> direction = lane_of(rays.direction, lane);
-    const Vector<Real> outward = shape.outward_at(primitive, lane_of(rays.origin, lane) + t * direction);
-    return blur(rays, lane, shape.error_at(primitive, rays.reach[lane]), t) / std::abs(dot(outward, direction));
+    const Vector<Real> point = lane_of(rays.origin, lane) + t * direction;
+    const Real error = shape.error_at(primitive, rays.reach[lane], point);
+    return blur(rays, lane, error, t) / std::abs(dot(shape.outward_at(primitive, point), direction));
 }
 
 }  // namespace whitted::WHITTED_ISA

@@ -7,6 +7,8 @@
 
 #include "shapes/contact.h"
 #include "shapes/crossing.h"
+#include "shapes/sight.h"
+#include "shapes/start.h"
 #include "tracing/camera.h"
 #include "tracing/description.h"
 #include "tracing/incidence.h"
@@ -41,11 +43,7 @@ class Sphere {
 
     int object() const { return object_; }
     int piece(int) const { return -1; }
-    Real curvature() const { return 1 / radius_; }
-    template <typename T>
-    T error_at(int, const T&) const {
-        return error_;
-    }
+    Real error_at(int, Real, const Vector<Real>&) const { return error_; }
 
     // With g = center - origin, the roots of t^2 - 2 (g.d) t + g.g - r^2 = 0. The discriminant is r^2 - |g - (g.d)
     // d|^2, which does not cancel for a small sphere far away, and the roots are q = g.d +- sqrt(...), of the sign that
@@ -53,8 +51,6 @@ class Sphere {
     // Intersection", Ray Tracing Gems, 2019, ch. 7.
     template <bool which_primitive>
     [[gnu::always_inline]] bool intersect(const Rays<Real>& rays, Crossing<Real>& crossing, Mask<Real>&) const {
-        const L zero = Real(0);
-
         const Vector<L> g = Vector<L>(center_) - rays.origin;
         const L closest = dot(g, rays.direction);  // where the ray passes the centre
         const Vector<L> across = g - closest * rays.direction;
@@ -69,25 +65,21 @@ class Sphere {
             return false;
         }
 
-        const L radius = radius_;
-        const L radius2 = radius * radius;
-        const L discriminant = radius2 - across2;
-        // A ray that touches the sphere passes it by.
-        const L touching =
-            min(L(diameter_) * (rays.t_min + abs(closest) * rays.spread) + L(touching_), L(most_touching_));
-        const L root = sqrt(max(discriminant, zero));
-        const L q = closest + select(closest >= zero, root, -root);
-        const L other = (dot(g, g) - radius2) / q;
-        Passage<Real> passage{min(q, other), max(q, other), primitive_, primitive_, ~(discriminant > touching)};
-        const Mask<Real> from_within = starts_here & rays.inside;
-        if (any(starts_here)) {
-            // With the origin on the sphere, the roots are 0 and 2 g.d, and only the second, from within, is a hit.
-            const L through = closest + closest;
-            passage.far = select(from_within, through, passage.far);
-            passage.misses = select(starts_here, left_outward | (through <= zero), passage.misses);
-        }
-        crossing = first_crossing(passage, rays, from_within);
+        Passage<Real> passage;
+        pass(g, closest, across2, rays, starts_here, rays.inside, passage);
+        crossing = first_crossing(passage, rays, starts_here & rays.inside);
         return true;
+    }
+
+    // The passage of rays through the sphere; those that start on it are inside it or not, as `start` knows.
+    L pass(const Rays<Real>& rays, const Start<Real>& start, const Side* side, Passage<Real>& passage) const {
+        const Vector<L> g = Vector<L>(center_) - rays.origin;
+        const L closest = dot(g, rays.direction);
+        const Vector<L> across = g - closest * rays.direction;
+        const Mask<Real> here = start.on(*side);
+        pass(g, closest, dot(across, across), rays, here, start.within(*side), passage);
+        passage.near = select(here, L(-std::numeric_limits<Real>::infinity()), passage.near);
+        return std::numeric_limits<Real>::infinity();
     }
 
     // Rays that start on the sphere by the roundings of their origins only, and not by knowledge, do not meet it there.
@@ -124,19 +116,44 @@ class Sphere {
         if (any(lost)) [[unlikely]] {
             outward = select(lost, select(inside, rays.direction, -rays.direction), outward);
         }
-        return {center + L(radius_) * outward, outward, error_, curvature()};
+        return {center + L(radius_) * outward, outward, error_, 1 / radius_};
     }
 
     template <typename Visit>
     void for_each_contact(const SphereDescription& sphere, const Triple& point, Visit visit) const {
         if (lies_on(sphere, point)) {
             const Vector<Real> arm = vector_of<Real>(in_range(direction(sphere.center, point)));
-            visit(Contact<Real>{object_, primitive_, normalize(arm), false, true});
+            visit(Contact<Real>{object_, primitive_, normalize(arm), 1 / radius_, false, true, primitive_});
         }
     }
 
  private:
     friend class SphereSight<Real>;
+
+    [[gnu::always_inline]] void pass(const Vector<L>& g, L closest, L across2, const Rays<Real>& rays,
+                                     Mask<Real> starts_here, Mask<Real> inside, Passage<Real>& passage) const {
+        const L zero = Real(0);
+        const L radius = radius_;
+        const L radius2 = radius * radius;
+        const L discriminant = radius2 - across2;
+        // A ray that touches the sphere passes it by.
+        const L touching =
+            min(L(diameter_) * (rays.t_min + abs(closest) * rays.spread) + L(touching_), L(most_touching_));
+        const L root = sqrt(max(discriminant, zero));
+        const L q = closest + select(closest >= zero, root, -root);
+        const L other = (dot(g, g) - radius2) / q;
+        passage.near = min(q, other);
+        passage.far = max(q, other);
+        passage.near_primitive = primitive_;
+        passage.far_primitive = primitive_;
+        passage.misses = ~(discriminant > touching);
+        if (any(starts_here)) {
+            // With the origin on the sphere, the roots are 0 and 2 g.d, and only the second, from within, is a hit.
+            const L through = closest + closest;
+            passage.far = select(starts_here & inside, through, passage.far);
+            passage.misses = select(starts_here, ~inside | (through <= zero), passage.misses);
+        }
+    }
 
     Vector<Real> center_;
     Real radius_;
@@ -147,44 +164,30 @@ class Sphere {
     int object_, primitive_;
 };
 
-// A sphere as seen from a point, such as the eye or a light: tells most lines through the point that miss the sphere,
-// for less than half of what intersect() costs. Such a line, of direction d, passes the centre at a distance whose
-// square is g.g - (g.d)^2, with g = center - point. That difference cancels for a small sphere far away, so it only
-// counts where it is larger than its error.
+// A sphere as seen from a point.
 template <typename Real>
-class SphereSight {
+class SphereSight : public BallInSight<Real> {
  public:
     using L = Lanes<Real>;
+    using Ball = BallInSight<Real>;
 
     SphereSight(const Sphere<Real>& sphere, const Vector<Real>& point)
-        : center_(sphere.center_),
-          g_(sphere.center_ - point),
-          outside2_((1 - slack) * dot(g_, g_) - (1 + slack) * sphere.reach2_),
-          inside2_((1 - slack) * sphere.reach2_),
-          encloses_((1 + slack) * dot(g_, g_) < inside2_) {}
-
-    bool may_be_hit(const Vector<L>& direction) const { return any(may_meet(direction, L(Real(0)))); }
+        : Ball(sphere.center_, sphere.reach2_, point),
+          center_(sphere.center_),
+          inside2_((1 - Ball::slack) * sphere.reach2_),
+          encloses_((1 + Ball::slack) * dot(Ball::to_center(), Ball::to_center()) < inside2_) {}
 
     bool may_block(const Rays<Real>& rays, L distance, Mask<Real> wanted) const {
         if (encloses_) {
             const Vector<L> g = Vector<L>(center_) - rays.origin;
             return any(wanted & ~(dot(g, g) < L(inside2_)));
         }
-        // The rays pass the point at some distance, for their directions are rounded.
-        return any(wanted & may_meet(rays.direction, L(slack) * distance * distance));
+        return Ball::may_block(rays, distance, wanted);
     }
 
  private:
-    static constexpr Real slack = 128 * std::numeric_limits<Real>::epsilon();
-
-    Mask<Real> may_meet(const Vector<L>& direction, L error2) const {
-        const L closest = dot(Vector<L>(g_), direction);
-        return ~(closest * closest + error2 < L(outside2_));  // also where a square is too large for a number
-    }
-
-    Vector<Real> center_, g_;
-    Real outside2_;  // g.g - r^2, and less by more than the error
-    Real inside2_;   // r^2, likewise
+    Vector<Real> center_;
+    Real inside2_;   // r^2, and less by more than the error
     bool encloses_;  // the point lies in the sphere, and a ball holds all between two of its points
 };
 

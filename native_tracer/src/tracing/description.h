@@ -3,6 +3,7 @@
 #pragma once
 
 #include <array>
+#include <cstddef>
 #include <cstdint>
 #include <variant>
 #include <vector>
@@ -58,7 +59,25 @@ struct PolyhedronDescription {
     std::vector<Quadruple> planes;  // a, b, c, d of a x + b y + c z + d <= 0
 };
 
-using ShapeDescription = std::variant<SphereDescription, PolyhedronDescription>;
+struct QuadricDescription {
+    // A to J of A x^2 + B y^2 + C z^2 + D x y + E x z + F y z + G x + H y + I z + J <= 0
+    std::array<double, 10> coefficients;
+};
+
+using LeafDescription = std::variant<SphereDescription, PolyhedronDescription, QuadricDescription>;
+
+// Leaves, and a Boolean expression over them in postfix order: a leaf's number pushes it, an operation takes the last
+// two.
+struct CsgDescription {
+    static constexpr int unite = -1, subtract = -2, intersect = -3;  // other numbers are leaves
+    std::vector<LeafDescription> leaves;
+    std::vector<int> program;
+};
+
+inline constexpr std::size_t most_csg_leaves = 64;
+inline constexpr std::size_t deepest_csg_stack = 64;  // of an expression that is worked out
+
+using ShapeDescription = std::variant<SphereDescription, PolyhedronDescription, QuadricDescription, CsgDescription>;
 
 struct ObjectDescription {
     int pigment, finish;

@@ -47,6 +47,28 @@ bool lies_on(const Quadruple& plane, const Triple& point) {
     return std::abs(height.value) <= height.error;
 }
 
+bool lies_on(const QuadricDescription& quadric, const Triple& point) {
+    const auto& q = quadric.coefficients;
+    const Real x = point[0], y = point[1], z = point[2];
+    Real value = 0;
+    Real sum = 0;
+    const auto add = [&](Real term, int factors) {
+        value += term;
+        sum += static_cast<Real>(factors) * std::abs(term);  // each of them is rounded
+    };
+    add(q[0] * x * x, 3);
+    add(q[1] * y * y, 3);
+    add(q[2] * z * z, 3);
+    add(q[3] * x * y, 3);
+    add(q[4] * x * z, 3);
+    add(q[5] * y * z, 3);
+    add(q[6] * x, 2);
+    add(q[7] * y, 2);
+    add(q[8] * z, 2);
+    add(q[9], 1);
+    return std::abs(value) <= rounding * sum;
+}
+
 bool lies_within(const std::vector<Quadruple>& planes, const Triple& point) {
     return std::all_of(planes.begin(), planes.end(), [&](const Quadruple& plane) {
         const Height height = height_above(plane, point);

@@ -15,6 +15,7 @@ namespace whitted {
 // do: each may be wrong by 2^-53 of itself.
 bool lies_on(const SphereDescription& sphere, const Triple& point);
 bool lies_on(const Quadruple& plane, const Triple& point);
+bool lies_on(const QuadricDescription& quadric, const Triple& point);
 
 // Whether the point lies in the half-spaces of all planes, or on their borders.
 bool lies_within(const std::vector<Quadruple>& planes, const Triple& point);

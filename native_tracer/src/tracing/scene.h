@@ -262,8 +262,8 @@ struct Scene {
     template <Ties ties, typename MayHit, typename Visit>
     [[gnu::always_inline]] void for_each_crossing(const Rays<Real>& rays, const Lanes<Real>& limit, Mask<Real>& close,
                                                   const View<Real>* view, MayHit may_hit, Visit visit) const {
-        Crossing<Real> crossing;
         const auto cross = [&](const auto& shape) __attribute__((always_inline)) {
+            Crossing<Real> crossing;  // of its own, so that it stays in registers but for calls that need it elsewhere
             bool crosses;
             if constexpr (ties == Ties::decided) {
                 crosses = shape.intersect_by_rules(rays, crossing);
@@ -351,10 +351,10 @@ void Scene<Real>::add_eye(const SceneDescription& description) {
         if (eye_contact.object < 0 && contact.on_body) {
             eye_contact.object = contact.object;
             eye_contact.primitive = contact.primitive;
-            eye_contact.curvature = shapes.visit(objects[static_cast<std::size_t>(contact.object)].shape,
-                                                 [](const auto& shape) { return shape.curvature(); });
+            eye_contact.body = contact.body;
+            eye_contact.curvature = contact.curvature;
         }
-        if (contact.object == eye_contact.object) {
+        if (contact.body >= 0 && contact.body == eye_contact.body) {
             eye_contact.outward.push_back(contact.outward);
         }
     }

@@ -170,7 +170,7 @@ Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const H
         // A ray that is off meets the surface farther off the more it slants.
         const L along = min(off / abs(dot(surface.outward, rays.direction)), blur);
         surface.error = rounding_error(reach, hits.t) + along;
-        surface.lean = L(moved.curvature) * surface.error;
+        surface.lean = moved.curvature * surface.error;
         surface.pigment = color_at(*object.pigment, {surface.point, surface.outward, rays.direction, off, blur});
         const Finish<Real>& finish = object.finish;
         surface.ka = finish.ka;

@@ -1,7 +1,4 @@
 // The search of a tree over boxes by a group of rays.
-//
-// A box is tested so that no hit is lost which a test of its objects themselves would find, with all its rounding
-// errors: it is widened by a bound of those, which is relative to the coordinates at hand.
 
 #pragma once
 
@@ -14,8 +11,8 @@
 
 #include "search/search.h"
 #include "shapes/shapes.h"
+#include "tracing/box_test.h"
 #include "tracing/ray.h"
-#include "tracing/rounding.h"
 #include "tracing/vector.h"
 
 namespace whitted::WHITTED_ISA {
@@ -26,60 +23,6 @@ struct TreeNode {
     int children;                          // the first of two neighbours; 0: it is a leaf
     int axis;                              // along which the first child lies before the second
     typename Shapes<Real>::Ranges shapes;  // of a leaf
-};
-
-// Where rays are in boxes: all that does not depend on the box.
-template <typename Real>
-class BoxTest {
- public:
-    using L = Lanes<Real>;
-
-    // Objects are found with errors of some 20 epsilon times the coordinates, of the ray's origin or their own, that
-    // take part; planes that meet at sharp angles multiply them by up to `growth`. An origin may itself lie outside the
-    // object that it is on, by less than t_min.
-    BoxTest(const Rays<Real>& rays, Real growth, Real reach) {
-        // Boxes are wider still, for what ties with a hit has to be come to, from wherever the ray may lead; nothing in
-        // the tree is as far away as twice the sum of both reaches.
-        const L both = rays.reach + L(reach);
-        const L error = L(std::max(32 * std::numeric_limits<Real>::epsilon(), 4096 * tie_epsilon<Real>)) * both;
-        L off = error + rays.t_min;
-        if constexpr (decides_ties<Real>) {
-            off = off + L(Real(4)) * both * rays.spread;
-        }
-        const L margin = L(growth) * off;
-        const Vector<L> margins{margin, margin, margin};
-        before_ = rays.origin + margins;
-        behind_ = rays.origin - margins;
-        inverse_ = {inverse(rays.direction.x), inverse(rays.direction.y), inverse(rays.direction.z)};
-    }
-
-    // The rays that are in the box somewhere between their origin and `limit`, and since when.
-    [[gnu::always_inline]] Mask<Real> operator()(const TreeNode<Real>& node, L limit, L& since) const {
-        L enter = Real(0);
-        L leave = limit;
-        clip(L(node.low.x), L(node.high.x), before_.x, behind_.x, inverse_.x, enter, leave);
-        clip(L(node.low.y), L(node.high.y), before_.y, behind_.y, inverse_.y, enter, leave);
-        clip(L(node.low.z), L(node.high.z), before_.z, behind_.z, inverse_.z, enter, leave);
-        since = enter;
-        return enter <= leave;
-    }
-
- private:
-    // Never infinite, so that no product with it is 0 times infinity.
-    static L inverse(L slope) {
-        const L least = std::numeric_limits<Real>::min();
-        return L(Real(1)) / select(abs(slope) < least, least, slope);
-    }
-
-    [[gnu::always_inline]] static void clip(L low, L high, L before, L behind, L inverse, L& enter, L& leave) {
-        const L one = (low - before) * inverse;
-        const L other = (high - behind) * inverse;
-        enter = max(enter, min(one, other));
-        leave = min(leave, max(one, other));
-    }
-
-    Vector<L> before_, behind_;  // the origin, so moved that boxes need not be widened
-    Vector<L> inverse_;
 };
 
 template <typename Real>
@@ -113,7 +56,9 @@ class Tree {
         if (nodes_.empty()) {
             return;
         }
-        const BoxTest<Real> enters(rays, growth_, reach_);
+        const BoxTest<Real> test(rays, growth_, reach_);
+        const auto enters = [&](const TreeNode<Real>& node, L until, L& since)
+                                __attribute__((always_inline)) { return test(node.low, node.high, until, since); };
         // Most rays decide which of two children comes first.
         const int most = lane_count<Real> / 2;
         const L zero = Real(0);

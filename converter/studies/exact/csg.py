@@ -1,0 +1,92 @@
+"""Where a ray meets a csg, by the definition: whether points half-way between crossings of its surfaces are inside."""
+
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass
+from functools import cmp_to_key
+from itertools import pairwise
+from typing import Literal, NamedTuple
+
+from converter.studies.exact.arithmetic import Arithmetic, Number
+
+Along = tuple[Number, Number, Number]
+"""The numbers a, b and c of a t^2 + 2 b t + c, which is a surface's value along a ray, negative inside."""
+
+
+@dataclass(frozen=True, slots=True)
+class Leaf:
+    """Where all of some surfaces, by their indices, have values that are not positive."""
+
+    surfaces: range
+
+
+@dataclass(frozen=True, slots=True)
+class Node:
+    """Steps, from nothing on."""
+
+    steps: "tuple[tuple[Literal['+', '-', '&'], Leaf | Node], ...]"
+
+
+class Met(NamedTuple):
+    """Where the whole is entered or left: the distance, a surface, whether from within, and whether others cross
+    there, too.
+    """
+
+    distance: Number
+    surface: int
+    inside: bool
+    tied: bool
+
+
+def first_met(node: Node, surfaces: Sequence[Along], numbers: Arithmetic, tangent: Callable[[], None]) -> Met | None:
+    """The first change beyond the ray's start; `tangent` is called where the ray touches a surface."""
+
+    def order(one: tuple[Number, int], other: tuple[Number, int]) -> int:
+        return numbers.sign(one[0] - other[0])
+
+    crossings: list[tuple[Number, int]] = [
+        (t, k) for k, along in enumerate(surfaces) for t in _roots(along, numbers, tangent) if numbers.sign(t) > 0
+    ]
+    crossings.sort(key=cmp_to_key(order))
+    groups: list[list[tuple[Number, int]]] = []
+    for crossing in crossings:
+        if groups and numbers.sign(crossing[0] - groups[-1][0][0]) == 0:
+            groups[-1].append(crossing)
+        else:
+            groups.append([crossing])
+    if not groups:
+        return None
+    distances = [group[0][0] for group in groups]
+    middles = [(s + t) / 2 for s, t in pairwise([0 * distances[0], *distances])] + [2 * distances[-1]]
+    values = [_contains(node, surfaces, t, numbers) for t in middles]
+    for group, (before, after) in zip(groups, pairwise(values), strict=True):
+        if before != after:
+            return Met(*group[0], before, len(group) > 1)
+    return None
+
+
+def _roots(along: Along, numbers: Arithmetic, tangent: Callable[[], None]) -> Iterator[Number]:
+    a, b, c = along
+    if numbers.sign(a) == 0:
+        if numbers.sign(b):
+            yield -c / (2 * b)
+    elif numbers.sign(c) == 0:  # the other root is where the ray starts
+        yield -2 * b / a
+    else:
+        discriminant = b * b - a * c
+        sign = numbers.sign(discriminant)
+        if sign > 0:
+            root = numbers.root(discriminant)
+            yield (-b - root) / a
+            yield (-b + root) / a
+        elif sign == 0 and numbers.sign(a) * numbers.sign(b) < 0:
+            tangent()
+
+
+def _contains(node: Leaf | Node, surfaces: Sequence[Along], t: Number, numbers: Arithmetic) -> bool:
+    if isinstance(node, Leaf):
+        return all(numbers.sign((a * t + 2 * b) * t + c) <= 0 for a, b, c in map(surfaces.__getitem__, node.surfaces))
+    whole = False
+    for operation, operand in node.steps:
+        inside = _contains(operand, surfaces, t, numbers)
+        whole = whole or inside if operation == "+" else whole and inside == (operation == "&")
+    return whole

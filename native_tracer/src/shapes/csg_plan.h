@@ -1,0 +1,39 @@
+// What is worked out of a csg once, for all kernels.
+
+#pragma once
+
+#include <cstdint>
+#include <vector>
+
+#include "search/bvh.h"
+#include "tracing/description.h"
+
+namespace whitted {
+
+// The surface that a primitive is a piece of. Primitives that are the same but for their sides have the same surface.
+struct Side {
+    int surface;
+    bool reversed;  // its inner side is the surface's outer one
+};
+
+struct CsgPlan {
+    std::vector<int> program;
+    std::vector<int> first_piece;    // of each leaf, and their number
+    std::vector<int> leaf_of_piece;  // pieces are the leaves' primitives, in order
+    std::vector<Side> sides;         // of the pieces
+    // A tree over the boxes of leaves, where there are many, and the leaves outside it; see BoxTest.
+    Bvh tree;
+    std::vector<int> apart;
+    double growth = 1, reach = 0;
+
+    // Not here: kernels must offer no functions to one another, see isa.h.
+    CsgPlan();
+    CsgPlan(CsgPlan&& other) noexcept;
+    CsgPlan& operator=(CsgPlan&& other) noexcept;
+    ~CsgPlan();
+};
+
+// For numbers with so many digits, in bits.
+CsgPlan plan_csg(const CsgDescription& csg, int digits);
+
+}  // namespace whitted

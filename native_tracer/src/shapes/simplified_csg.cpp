@@ -1,0 +1,108 @@
+#include "shapes/simplified_csg.h"
+
+#include <algorithm>
+#include <cstddef>
+#include <optional>
+#include <utility>
+#include <variant>
+#include <vector>
+
+namespace whitted {
+
+namespace {
+
+// A part of an expression: what it pushes, and the polyhedron that it is, if it is one.
+struct Part {
+    std::vector<int> program;
+    std::optional<PolyhedronDescription> polyhedron;
+};
+
+// Not all signs of 0 are turned, so that the plane is the same number by number.
+Quadruple turned(const Quadruple& plane) { return {0 - plane[0], 0 - plane[1], 0 - plane[2], 0 - plane[3]}; }
+
+// The planes of both, if that is the polyhedron left by an operation.
+std::optional<PolyhedronDescription> combined(const Part& left, int operation, const Part& right) {
+    if (!left.polyhedron || !right.polyhedron) {
+        return std::nullopt;
+    }
+    PolyhedronDescription result = *left.polyhedron;
+    const std::vector<Quadruple>& planes = right.polyhedron->planes;
+    if (operation == CsgDescription::intersect) {
+        result.planes.insert(result.planes.end(), planes.begin(), planes.end());
+    } else if (operation == CsgDescription::subtract && planes.size() == 1) {
+        result.planes.push_back(turned(planes[0]));
+    } else {
+        return std::nullopt;
+    }
+    return result;
+}
+
+}  // namespace
+
+ShapeDescription simplified(const CsgDescription& csg) {
+    CsgDescription result;
+    std::vector<int> places(csg.leaves.size(), -1);
+    // Puts a part's leaves into the result and writes its program in their numbers.
+    const auto settled = [&](const Part& part) {
+        std::vector<int> program;
+        if (part.polyhedron && part.program.size() > 1) {
+            result.leaves.push_back(*part.polyhedron);
+            return std::vector<int>{static_cast<int>(result.leaves.size()) - 1};
+        }
+        for (const int step : part.program) {
+            if (step < 0) {
+                program.push_back(step);
+                continue;
+            }
+            int& place = places[static_cast<std::size_t>(step)];
+            if (place < 0) {
+                place = static_cast<int>(result.leaves.size());
+                result.leaves.push_back(csg.leaves[static_cast<std::size_t>(step)]);
+            }
+            program.push_back(place);
+        }
+        return program;
+    };
+
+    // Parts that are no polyhedra are settled already: their programs are in the result's numbers.
+    std::vector<Part> stack;
+    for (const int step : csg.program) {
+        if (step >= 0) {
+            const auto* polyhedron = std::get_if<PolyhedronDescription>(&csg.leaves[static_cast<std::size_t>(step)]);
+            Part part{{step}, polyhedron ? std::optional(*polyhedron) : std::nullopt};
+            if (!polyhedron) {
+                part.program = settled(part);
+            }
+            stack.push_back(std::move(part));
+            continue;
+        }
+        Part right = std::move(stack.back());
+        stack.pop_back();
+        Part& left = stack.back();
+        if (auto polyhedron = combined(left, step, right)) {
+            left.polyhedron = std::move(polyhedron);
+            left.program.insert(left.program.end(), right.program.begin(), right.program.end());
+            left.program.push_back(step);
+            continue;
+        }
+        for (Part* part : {&left, &right}) {
+            if (part->polyhedron) {
+                part->program = settled(*part);
+                part->polyhedron.reset();
+            }
+        }
+        left.program.insert(left.program.end(), right.program.begin(), right.program.end());
+        left.program.push_back(step);
+    }
+    Part& whole = stack.back();
+    if (whole.polyhedron) {
+        return *whole.polyhedron;
+    }
+    if (whole.program.size() == 1) {
+        return std::visit([](auto& leaf) { return ShapeDescription(leaf); }, result.leaves.front());
+    }
+    result.program = std::move(whole.program);
+    return result;
+}
+
+}  // namespace whitted
