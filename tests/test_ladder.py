@@ -16,8 +16,9 @@ from converter.why.student import deviations, make_student
 FOLDER = Path(__file__).resolve().parents[1] / "scenes" / "ladder"
 SCENES = sorted(FOLDER.glob("*.in"))
 WIDTH, HEIGHT = 320, 240
-SHOWS = 20
-"""Pixels of a scene that a mistake has to change to show in it."""
+STEP = 3
+SHOWS = 2
+"""Pixels in every third column and row of a scene that a mistake has to change to show in it."""
 PLACES = np.array([(x, y) for y in range(HEIGHT) for x in range(WIDTH)], np.int32)
 
 
@@ -43,8 +44,9 @@ def first_shown():
     first = {}
     for number in range(1, len(SCENES) + 1):
         student, levels = right(number)
+        some = (PLACES % STEP == 0).all(axis=1)
         for name in [d.name for d in student.candidates() if d.name not in first]:
-            if (student.drawn(PLACES, frozenset([name])) != levels).any(axis=1).sum() >= SHOWS:
+            if (student.drawn(PLACES[some], frozenset([name])) != levels[some]).any(axis=1).sum() >= SHOWS:
                 first[name] = number
     return first
 
