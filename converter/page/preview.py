@@ -11,6 +11,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, replace
 from pathlib import Path
 
+from converter.analysis.notices import scene_notices
 from converter.errors import ExportError
 from converter.page.reading import Reading, read
 from converter.renderers.base import Rendering
@@ -60,7 +61,15 @@ class Undrawn:
     message: str
 
 
-Event = Read | Drawn | Undrawn
+@dataclass(frozen=True, slots=True)
+class Noted:
+    """What is worth knowing of a scene although nothing is wrong, a line each."""
+
+    version: int
+    notes: tuple[str, ...]
+
+
+Event = Read | Drawn | Undrawn | Noted
 
 
 class _GivenUpError(Exception):
@@ -111,7 +120,7 @@ class Preview(threading.Thread):
             except _GivenUpError:
                 pass
             except _TooLongError:
-                self._report(Undrawn(version, f"drawing takes longer than {LONGEST:g} s: `whitted render` has the time"))
+                self._report(Undrawn(version, f"drawing takes over {LONGEST:g} s: leave it to `whitted render`"))
             except (ValueError, MemoryError, ExportError) as error:
                 self._report(Undrawn(version, str(error) or "not enough memory"))
 
@@ -121,11 +130,14 @@ class Preview(threading.Thread):
         if reading.scene is None or self._superseded:
             return
         if self._last_seconds > AT_ONCE:
-            width, height = self._settings.width, self._settings.height
-            size = {"width": max(1, width // SMALLER), "height": max(1, height // SMALLER)}
-            self._stage(version, reading.scene, replace(self._settings, **size, samples=1), DEEPEST_SMALL, whole=False)
+            width, height = (max(1, size // SMALLER) for size in (self._settings.width, self._settings.height))
+            small = replace(self._settings, width=width, height=height, samples=1)
+            self._stage(version, reading.scene, small, DEEPEST_SMALL, whole=False)
         self._last_seconds = math.inf  # unless it comes to its end
         self._last_seconds = self._stage(version, reading.scene, self._settings, DEEPEST, whole=True)
+        if not self._superseded:
+            notes = (*reading.scene.warnings, *scene_notices(reading.scene, self._settings))
+            self._report(Noted(version, notes))
 
     def _stage(self, version: int, scene: Scene, settings: Settings, deepest: int, whole: bool) -> float:
         """Draw one picture; returns the seconds that took."""

@@ -54,5 +54,5 @@ def _mark(problem: Problem, text: str, lines: list[str]) -> Mark:
         end = len(line[:start].rstrip()) or len(line)
         start = len(line[:end]) - len((line[:end].split() or [""])[-1])
     before = sum(len(earlier) + 1 for earlier in lines[: problem.line - 1])
-    places = (to_browser(text, before + place) for place in (start, end))
-    return Mark(*places, problem.line, problem.column, problem.message)
+    start, end = to_browser(text, before + start), to_browser(text, before + end)
+    return Mark(start, end, problem.line, problem.column, problem.message)
