@@ -17,10 +17,11 @@ PATIENCE = 20.0
 
 
 class Served(NamedTuple):
-    """A server: its process, and its address."""
+    """A server: its process, its address, and the file that it serves."""
 
     process: "subprocess.Popen[str]"
     address: str
+    scene: Path
 
 
 @contextmanager
@@ -32,7 +33,7 @@ def served(scene: Path, *options: str) -> Iterator[Served]:
         assert process.stdout is not None
         found = re.search(r"http://\S+", process.stdout.readline())
         assert found, process.communicate()[1]
-        yield Served(process, found[0])
+        yield Served(process, found[0], scene)
     finally:
         if process.poll() is None:
             process.send_signal(signal.SIGINT)
