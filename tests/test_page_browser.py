@@ -90,8 +90,9 @@ def test_a_mistake_is_underlined_told_and_gone_when_mended(page):
     assert "old" in page.get_attribute("#native", "class")
     page.keyboard.press("Backspace")
     page.keyboard.press("Backspace")
-    page.wait_for_selector(".mistake", state="detached")
-    assert page.locator("#mistakes li").count() == 0
+    page.wait_for_selector("#mistakes li", state="detached")
+    assert page.locator(".mistake").count() == 0
+    assert "old" not in page.get_attribute("#native", "class")
 
 
 def test_a_click_shows_the_rays_of_both_renderers_and_their_path(page):

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 import time
+from concurrent.futures import ThreadPoolExecutor
 from contextlib import contextmanager
 from pathlib import Path
 
@@ -51,7 +52,7 @@ SETTINGS = Settings(width=40, height=30, threads=1)
 TOKEN = "token"
 ADDRESS = "http://127.0.0.1:8000"
 LIVE = "ws://127.0.0.1:8000/token/live"
-SOON = 20.0
+SOON = 10.0
 """Seconds within which whatever is waited for happens."""
 
 
@@ -74,6 +75,7 @@ class Window:
     def __init__(self, socket):
         self.socket = socket
         self.typed = 0
+        self._receiver = ThreadPoolExecutor(1)
 
     def say(self, kind, **told):
         self.socket.send_json({"type": kind, **told})
@@ -85,7 +87,7 @@ class Window:
     def until(self, kind, wanted=lambda message: True):
         """The next message of a kind, and as wanted; a picture's levels are an array."""
         while True:
-            message = self.socket.receive()
+            message = self._receiver.submit(self.socket.receive).result(SOON)
             if message["type"] == "websocket.close":
                 raise WebSocketDisconnect(message["code"])
             told = json.loads(message["text"]) if message.get("text") else _unframed(message["bytes"])

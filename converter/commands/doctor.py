@@ -9,6 +9,7 @@ from pathlib import Path
 
 from converter.commands.exits import OK, UNAVAILABLE
 from converter.commands.options import Parser
+from converter.commands.serve import INSTALL, missing
 from converter.commands.tables import print_table
 
 PACKAGES = ("mitsuba", "drjit", "numpy", "OpenImageIO", "trimesh", "manifold3d", "flip-evaluator", "rich", "matplotlib")
@@ -90,6 +91,7 @@ def _findings() -> tuple[list[tuple[str, str]], list[str], bool]:
     if library is None or blames_llvm:
         advice.append(_llvm_advice(MINIMUM_LLVM, library is not None and library.by_user))
     rows.append(("kernel cache", _kernel_cache()))
+    rows.append(("page", f"needs {INSTALL}" if missing() else "whitted serve can show it"))
     return rows, advice, native.works and bool(working)
 
 

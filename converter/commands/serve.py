@@ -42,14 +42,16 @@ def parser() -> Parser:
 
 def run(arguments: argparse.Namespace) -> int:
     """Serve, until Ctrl-C."""
-    if missing := _missing():
-        tell(f"whitted serve: {missing} is missing: {INSTALL}")
+    if what := missing():
+        tell(f"whitted serve: {what} is missing: {INSTALL}")
         return UNAVAILABLE
     from converter.page.gate import is_local
     from converter.page.preview import MOST_PIXELS
     from converter.page.server import serve
     from converter.page.session import Session
+    from converter.renderers.native import native_module
 
+    native_module()  # or it is told now that there is none
     if arguments.width is None and arguments.height is None:
         arguments.width, arguments.height = WIDTH, HEIGHT
     settings = settings_from(arguments)
@@ -76,8 +78,8 @@ def _port(text: str) -> int:
     return whole(text, 0, 65535)
 
 
-def _missing() -> str | None:
-    """What of the extra is not installed."""
+def missing() -> str | None:
+    """What of the extra is not installed; None if all is."""
     for name in ("starlette", "uvicorn", "websockets"):
         if find_spec(name) is None:
             return name

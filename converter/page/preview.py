@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 from pathlib import Path
 
 from converter.analysis.notices import scene_notices
-from converter.errors import ExportError
 from converter.page.reading import Reading, read
 from converter.renderers.base import Rendering
 from converter.renderers.native import NativeRenderer
@@ -121,8 +120,10 @@ class Preview(threading.Thread):
                 pass
             except _TooLongError:
                 self._report(Undrawn(version, f"drawing takes over {LONGEST:g} s: leave it to `whitted render`"))
-            except (ValueError, MemoryError, ExportError) as error:
-                self._report(Undrawn(version, str(error) or "not enough memory"))
+            except MemoryError:
+                self._report(Undrawn(version, "not enough memory"))
+            except Exception as error:  # whatever it is, the next text may be drawn
+                self._report(Undrawn(version, str(error) or type(error).__name__))
 
     def _draw(self, version: int, text: str) -> None:
         reading = read(text, self._file)

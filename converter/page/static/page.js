@@ -94,12 +94,12 @@ const shown = {
   },
 
   mitsuba(frame) {
-    mitsuba.show(frame);
+    showBeside(mitsuba, frame);
     mitsuba.tell("Mitsuba");
   },
 
   difference(frame) {
-    difference.show(frame);
+    showBeside(difference, frame);
     difference.tell(frame.told);
   },
 
@@ -158,6 +158,12 @@ const server = connect({
     keep();
   },
 });
+
+// Mitsuba takes longer: what it has drawn may belong to an older text than the picture at its side.
+function showBeside(picture, frame) {
+  picture.show(frame);
+  picture.figure.classList.toggle("old", String(frame.version) !== native.canvas.dataset.version);
+}
 
 function listItem(text) {
   const item = document.createElement("li");
