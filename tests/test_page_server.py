@@ -145,6 +145,15 @@ def test_only_our_names_and_our_own_pages_pass(client, headers, status):
         assert status == 403
 
 
+def test_an_address_for_programs_to_start_with_leads_to_the_page_once(scene):
+    app = make_app(Session(scene, SETTINGS), TOKEN, "127.0.0.1")
+    with TestClient(app, base_url=ADDRESS) as client:
+        path = app.once()
+        assert TOKEN not in path
+        assert client.get(path, follow_redirects=False).headers["location"] == f"/{TOKEN}/"
+        assert client.get(path).status_code == 403
+
+
 def test_names_that_are_ours():
     assert is_ours("box.local:80", "box.local")
     assert is_ours("192.168.0.7:80", "0.0.0.0")
@@ -469,6 +478,18 @@ def test_ctrl_c_ends_it_quietly_whoever_is_there(scene):
             assert process.wait(SOON) == 0
             assert time.monotonic() - began < 5
         assert process.stderr.read() == ""
+
+
+def test_a_browser_is_opened_that_gets_to_the_page(scene, tmp_path, monkeypatch):
+    """One that says where it got to."""
+    got = tmp_path / "got"
+    browser = tmp_path / "browser"
+    fetch = f"import sys, urllib.request as r; open({str(got)!r}, 'wb').write(r.urlopen(sys.argv[1]).read())"
+    browser.write_text(f"#!{sys.executable}\n{fetch}\n")
+    browser.chmod(0o755)
+    monkeypatch.setenv("BROWSER", str(browser))
+    with served(scene, "40", "30", "--open"):
+        _wait(lambda: got.exists() and b"page.js" in got.read_bytes())
 
 
 def test_other_machines_are_warned_of(scene):

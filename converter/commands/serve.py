@@ -65,10 +65,10 @@ def run(arguments: argparse.Namespace) -> int:
             "the net as plain text, may change the scene and read the pictures beside it"
         )
 
-    def ready(address: str) -> None:
+    def ready(address: str, once: str) -> None:
         print(f"{arguments.scene}: {address}\nCtrl-C ends it.", flush=True)
         if opens:
-            _open(address)
+            _open(once)
 
     serve(session, arguments.host, arguments.port, ready)
     return OK

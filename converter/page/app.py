@@ -13,7 +13,6 @@ from starlette.requests import Request
 from starlette.responses import FileResponse, PlainTextResponse, Response
 from starlette.routing import Mount, Route, WebSocketRoute
 from starlette.staticfiles import StaticFiles
-from starlette.types import ASGIApp
 from starlette.websockets import WebSocket, WebSocketDisconnect
 
 from converter.page.gate import Gate
@@ -37,7 +36,7 @@ def editor_folder() -> Path | None:
     return folder if (folder / "index.js").is_file() else None
 
 
-def make_app(session: Session, token: str, host: str) -> ASGIApp:
+def make_app(session: Session, token: str, host: str) -> Gate:
     """The application, served as `host` at the path `/token/`; the session begins and ends with it."""
     editor = editor_folder()
     assert editor is not None, "the command has looked"

@@ -2,10 +2,14 @@
 
 The token alone keeps other programs and pages out. That `Host` is an address, or a name we know, keeps out sites whose
 name has been made to lead here (DNS rebinding); that `Origin` is ours, sites that open a WebSocket to us.
+
+All users of a machine see the arguments of its programs, so a browser is started with an address that leads to the
+page once, and then never again.
 """
 
 import hmac
 import ipaddress
+import secrets
 
 from starlette.types import ASGIApp, Message, Receive, Scope, Send
 
@@ -28,6 +32,12 @@ class Gate:
 
     def __init__(self, app: ASGIApp, token: str, host: str) -> None:
         self._app, self._token, self._host = app, token, host
+        self._once: str | None = None
+
+    def once(self) -> str:
+        """A path that leads to the page, for the first who asks for it."""
+        self._once = secrets.token_urlsafe(24)
+        return f"/{self._once}"
 
     async def __call__(self, scope: Scope, receive: Receive, send: Send) -> None:
         """Answer a request."""
@@ -35,13 +45,21 @@ class Gate:
             await self._app(scope, receive, send)
             return
         headers = {name.lower(): value.decode("latin-1") for name, value in scope["headers"]}
-        if self._may_pass(scope["path"], headers):
+        if scope["type"] == "http" and self._is_once(scope["path"]):
+            self._once = None
+            place = [(b"location", f"/{self._token}/".encode()), *HEADERS]
+            await send({"type": "http.response.start", "status": 303, "headers": place})
+            await send({"type": "http.response.body", "body": b""})
+        elif self._may_pass(scope["path"], headers):
             await self._app(scope, receive, _with_headers(send))
         elif scope["type"] == "websocket":
             await send({"type": "websocket.close", "code": 1008})
         else:
             await send({"type": "http.response.start", "status": 403, "headers": [(b"content-type", b"text/plain")]})
             await send({"type": "http.response.body", "body": b"This needs the address that whitted serve has told.\n"})
+
+    def _is_once(self, path: str) -> bool:
+        return self._once is not None and hmac.compare_digest(path.encode(), f"/{self._once}".encode())
 
     def _may_pass(self, path: str, headers: dict[bytes, str]) -> bool:
         host, origin = headers.get(b"host", ""), headers.get(b"origin")

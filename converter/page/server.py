@@ -17,8 +17,9 @@ CLOSING = 1
 """Seconds that open connections have to end after Ctrl-C."""
 
 
-def serve(session: Session, host: str, port: int, ready: Callable[[str], None]) -> None:
-    """Serve at `host` and `port`, 0 for any that is free; call `ready` with the page's address.
+def serve(session: Session, host: str, port: int, ready: Callable[[str, str], None]) -> None:
+    """Serve at `host` and `port`, 0 for any that is free; call `ready` with the page's address, and with one that leads
+    there once.
 
     Raises:
         OSError: the address cannot be had.
@@ -31,10 +32,11 @@ def serve(session: Session, host: str, port: int, ready: Callable[[str], None]) 
         asyncio.run(_serve(session, listener, host, ready))
 
 
-async def _serve(session: Session, listener: socket.socket, host: str, ready: Callable[[str], None]) -> None:
+async def _serve(session: Session, listener: socket.socket, host: str, ready: Callable[[str, str], None]) -> None:
     token = secrets.token_urlsafe(24)
+    app = make_app(session, token, host)
     config = uvicorn.Config(
-        make_app(session, token, host),
+        app,
         log_level="critical",
         access_log=False,
         lifespan="on",
@@ -50,7 +52,8 @@ async def _serve(session: Session, listener: socket.socket, host: str, ready: Ca
     try:
         shown = f"[{host}]" if ":" in host else host
         listener.listen()
-        ready(f"http://{shown}:{listener.getsockname()[1]}/{token}/")
+        place = f"http://{shown}:{listener.getsockname()[1]}"
+        ready(f"{place}/{token}/", place + app.once())
         await server.serve(sockets=[listener])
     finally:
         session.end()  # also after a second Ctrl-C, which does not wait for the application's end
