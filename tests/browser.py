@@ -63,8 +63,14 @@ def open_page(browser: Any, address: str, width: int = 1400, height: int = 900) 
     page.on("pageerror", lambda error: page.errors.append(str(error)))
     page.on("console", lambda message: page.errors.append(message.text) if message.type == "error" else None)
     page.goto(address)
-    page.wait_for_selector("#native canvas[data-whole=true]")
+    settle(page)
     return page
+
+
+def settle(page: Any) -> None:
+    """Wait until the whole picture of the text as it is now is shown."""
+    canvas = "document.querySelector('#native canvas').dataset"
+    wait_until(page, f"{canvas}.version === document.body.dataset.version && {canvas}.whole === 'true'")
 
 
 def wait_until(page: Any, expression: str) -> None:

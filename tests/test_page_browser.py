@@ -8,7 +8,7 @@ import pytest
 
 pytest.importorskip("starlette", reason="the extra whitted[page] is not installed")
 pytest.importorskip("playwright", reason="Playwright is not installed")
-from browser import CHROMIUM, PATIENCE, chromium, open_page, served, wait_until
+from browser import CHROMIUM, PATIENCE, chromium, open_page, served, settle, wait_until
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium (Debian: apt install chromium)")
 SCENES = Path(__file__).resolve().parents[1] / "scenes"
@@ -40,6 +40,7 @@ def page(browser, server):
         page.locator(".cm-content").fill(original)
     server.scene.write_text(original)
     wait_until(page, "document.body.dataset.saved === 'true'")
+    settle(page)
     yield page
     assert page.errors == []
     page.context.close()
@@ -47,10 +48,6 @@ def page(browser, server):
 
 def text_of(page):
     return page.evaluate("[...document.querySelectorAll('.cm-line')].map((line) => line.textContent).join('\\n')")
-
-
-def version(page):
-    return int(page.get_attribute(CANVAS, "data-version"))
 
 
 def pixels(page):
@@ -64,15 +61,10 @@ def type_after(page, words, keys):
     page.keyboard.type(keys)
 
 
-def wait_for_picture(page, after):
-    wait_until(page, f"+document.querySelector('{CANVAS}').dataset.version > {after}")
-    wait_until(page, f"document.querySelector('{CANVAS}').dataset.whole === 'true'")
-
-
 def test_typing_draws(page):
-    before, picture = version(page), pixels(page)
+    picture = pixels(page)
     type_after(page, "sphere 0 32.7 0 20", "0")
-    wait_for_picture(page, before)
+    settle(page)
     assert pixels(page) != picture
     page.keyboard.press("Control+z")
     wait_until(page, f"document.querySelector('{CANVAS}').toDataURL() === '{picture}'")
@@ -125,7 +117,6 @@ def test_mitsuba_s_picture_and_the_difference_at_a_key(page):
 
 def test_dragging_turns_the_camera_and_the_text_follows(page):
     before = text_of(page)
-    after = version(page)
     box = page.locator(CANVAS).first.bounding_box()
     x, y = box["x"] + 60, box["y"] + 60
     page.mouse.move(x, y)
@@ -135,17 +126,17 @@ def test_dragging_turns_the_camera_and_the_text_follows(page):
     expected = before.replace("0 30 -200", "70.71 30 -170.71")  # to the left, so that the scene goes with the mouse
     wait_until(page, f"document.querySelectorAll('.cm-line')[3].textContent === '{expected.splitlines()[3]}'")
     assert text_of(page) == expected
-    wait_for_picture(page, after)
+    settle(page)
     assert page.is_hidden("#rays")  # it was no click
 
 
 def test_a_slider_moves_the_number_under_the_cursor(page):
-    before, picture = version(page), pixels(page)
+    picture = pixels(page)
     type_after(page, "sphere 0 32.7 0 20", "")
     page.wait_for_selector("#number", state="visible")
     assert page.text_content("#number-name") == "sphere: radius"
     page.locator("#slider").fill("35")
-    wait_for_picture(page, before)
+    settle(page)
     assert "2 2 sphere 0 32.7 0 35.0" in text_of(page)
     assert pixels(page) != picture
 
@@ -156,8 +147,10 @@ def test_two_windows_show_the_same(browser, server, page):
     wait_until(other, "document.querySelector('.cm-content').textContent.includes('32.7 0 20.5')")
     type_after(other, "sphere 0 32.7 0 20.5", "1")
     wait_until(page, "document.querySelector('.cm-content').textContent.includes('32.7 0 20.51')")
-    wait_until(page, f"document.querySelector('{CANVAS}').dataset.version === '{version(other)}'")
     assert text_of(page) == text_of(other)
+    settle(page)
+    settle(other)
+    assert pixels(page) == pixels(other)
     assert other.errors == []
     other.context.close()
 

@@ -210,6 +210,13 @@ def test_mistakes_are_told_and_the_last_picture_stays(client):
         page.until("native", lambda m: m["version"] == 3)
 
 
+def test_what_is_odd_in_a_scene_is_told_with_its_line(client):
+    with window(client) as page:
+        page.type(TEXT.replace("solid 1", "solid 255"))
+        (note,) = page.until("notes", lambda m: m["version"] == 2)["notes"]
+        assert note.startswith("9: pigment 0 has the colour 255")
+
+
 def test_two_pages_show_the_same_text_and_the_later_change_wins(client):
     with window(client) as one, window(client) as other:
         one.until("text")

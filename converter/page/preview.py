@@ -62,7 +62,7 @@ class Undrawn:
 
 @dataclass(frozen=True, slots=True)
 class Noted:
-    """What is worth knowing of a scene although nothing is wrong, a line each."""
+    """What is worth knowing of a scene although nothing is wrong: sentences, most after the number of a line."""
 
     version: int
     notes: tuple[str, ...]
@@ -138,7 +138,7 @@ class Preview(threading.Thread):
         self._last_seconds = self._stage(version, reading.scene, self._settings, DEEPEST, whole=True)
         if not self._superseded:
             notes = (*reading.scene.warnings, *scene_notices(reading.scene, self._settings))
-            self._report(Noted(version, notes))
+            self._report(Noted(version, tuple(note.removeprefix(f"{self._file}:") for note in notes)))
 
     def _stage(self, version: int, scene: Scene, settings: Settings, deepest: int, whole: bool) -> float:
         """Draw one picture; returns the seconds that took."""

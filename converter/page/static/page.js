@@ -42,14 +42,14 @@ const shown = {
       offline = false;
       send();
     } else if (message.heard === typed) {
-      version = message.version;
+      document.body.dataset.version = version = message.version;
       editor.adopt(message.text, message.mine);
     }
   },
 
   state(message) {
     heard = message.heard;
-    if (current()) version = message.version;
+    if (current()) document.body.dataset.version = version = message.version;
     elsewhere = message.elsewhere;
     element("state").textContent = elsewhere
       ? "changed here and elsewhere"
@@ -174,6 +174,8 @@ function listItem(text) {
 // ---- The text -------------------------------------------------------------------------------------------------------
 
 function send() {
+  element("said").textContent = "";
+  document.body.dataset.version = ""; // until the server has heard it
   if (!server.open) {
     offline = true;
     keep();
