@@ -1,5 +1,6 @@
 """`whitted serve` in a real browser: typing, mistakes, pixels, the camera, two windows, and the server's end."""
 
+import re
 import shutil
 import signal
 from pathlib import Path
@@ -200,3 +201,25 @@ def test_when_the_server_stops_the_page_says_so_and_keeps_the_text(browser, tmp_
     assert download.value.suggested_filename == "highlights.in"
     assert Path(download.value.path()).read_text() == text_of(page)
     page.context.close()
+
+
+def test_what_is_typed_while_the_connection_is_lost_is_there_when_it_is_back(browser, server, page):
+    sockets = []
+
+    def through(socket):
+        sockets.append(socket)
+        socket.connect_to_server()
+
+    other = browser.new_context(viewport={"width": 1400, "height": 900}).new_page()
+    other.route_web_socket(re.compile("/live$"), through)
+    other.goto(server.address)
+    settle(other)
+    sockets[0].close()
+    other.wait_for_selector("#gone", state="visible")
+    type_after(other, "sphere 0 32.7 0 20", ".25")
+    wait_until(page, "document.querySelector('.cm-content').textContent.includes('32.7 0 20.25')")
+    assert other.is_hidden("#gone")
+    assert len(sockets) == 2
+    settle(other)
+    assert text_of(page) == text_of(other)
+    other.context.close()
