@@ -9,6 +9,7 @@ from pathlib import Path
 
 from converter.commands.exits import OK, UNAVAILABLE
 from converter.commands.options import Parser
+from converter.commands.serve import INSTALL, missing
 from converter.commands.tables import print_table
 
 PACKAGES = ("mitsuba", "drjit", "numpy", "OpenImageIO", "trimesh", "manifold3d", "flip-evaluator", "rich", "matplotlib")
@@ -93,6 +94,7 @@ def _findings() -> tuple[list[tuple[str, str]], list[str], bool]:
     rows.append(("kernel cache", _kernel_cache()))
     walls = find_walls()
     rows.append(("walls for grade", walls.bubblewrap or f"none: {walls.why_not}"))
+    rows.append(("page", f"needs {INSTALL}" if missing() else "whitted serve can show it"))
     return rows, advice, native.works and bool(working)
 
 
