@@ -1,4 +1,6 @@
-"""The compiled tracer. Its public faces are `native_tracer` and its modules `halfspaces`, `bvh` and `incidence`."""
+"""The compiled tracer. Its public faces are `native_tracer` and its modules `halfspaces`, `bvh`, `incidence` and
+`sampler`.
+"""
 
 from collections.abc import Callable, Sequence
 from typing import Any, Literal, TypedDict, overload
@@ -154,6 +156,15 @@ def surfaces_at(point: _Triple, rows: Buffer, round: Buffer) -> list[int]:
 
 def within(point: _Triple, planes: Buffer) -> bool:
     """Whether a point lies in a body or on its surface; see `native_tracer.incidence`."""
+
+def sample_points(seed: int, column: Buffer, row: Buffer, k: Buffer, path: Buffer, use: Buffer) -> memoryview[int]:
+    """The points of samples; see `native_tracer.sampler`."""
+
+def disc_points(points: Buffer) -> memoryview[float]:
+    """Points of the unit disc; see `native_tracer.sampler`."""
+
+def cone_directions(axes: Buffer, versines: Buffer, points: Buffer) -> memoryview[float]:
+    """Directions in cones; see `native_tracer.sampler`."""
 
 def halfspace_bodies(coefficients: Buffer, offsets: Buffer) -> list[tuple[Any, ...]]:
     """What is known of each intersection of half-spaces; see `native_tracer.halfspaces`."""

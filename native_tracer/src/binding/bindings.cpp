@@ -260,4 +260,5 @@ NB_MODULE(_core, module) {
     bind_bvh(module);
     bind_incidence(module);
     bind_memory(module);
+    bind_sampler(module);
 }

@@ -10,3 +10,4 @@ void bind_halfspaces(nanobind::module_& module);
 void bind_bvh(nanobind::module_& module);
 void bind_incidence(nanobind::module_& module);
 void bind_memory(nanobind::module_& module);
+void bind_sampler(nanobind::module_& module);
