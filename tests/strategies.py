@@ -1,8 +1,10 @@
 """Hypothesis strategies for whole scenes, every one of which the format allows."""
 
 from collections.abc import Sequence
+from dataclasses import replace
 from math import hypot
 from pathlib import Path
+from typing import Any, TypeVar
 
 from hypothesis import assume
 from hypothesis import strategies as st
@@ -30,6 +32,7 @@ from converter.scene.model import (
 from converter.shapes.csg_program import program_of
 from converter.shapes.quadric_form import kind_of
 
+T = TypeVar("T")
 coordinates = st.floats(-1000, 1000)
 portions = st.floats(0, 1)
 vectors = st.tuples(coordinates, coordinates, coordinates)
@@ -48,7 +51,8 @@ def cameras(draw: st.DrawFn) -> Camera:
     eye = draw(vectors)
     view = draw(directions)
     up = draw(directions.filter(lambda up: _crossed(view, up) > 0.1))
-    return Camera(eye, (eye[0] + view[0], eye[1] + view[1], eye[2] + view[2]), up, draw(st.floats(1, 170)))
+    pose = eye, (eye[0] + view[0], eye[1] + view[1], eye[2] + view[2]), up
+    return Camera(*pose, draw(st.floats(1, 170)))
 
 
 @st.composite
@@ -122,8 +126,27 @@ def shapes() -> st.SearchStrategy[Shape]:
 
 
 @st.composite
+def with_effects(draw: st.DrawFn, scene: Scene) -> Scene:
+    """The scene with some of the optional numbers, of which some are 0."""
+    sizes = st.one_of(st.just(0.0), st.floats(1e-300, 1000))
+
+    def perhaps(part: T, **numbers: st.SearchStrategy[Any]) -> T:
+        return (
+            replace(part, **{name: draw(number) for name, number in numbers.items()}) if draw(st.booleans()) else part
+        )
+
+    return replace(
+        scene,
+        camera=perhaps(scene.camera, aperture=sizes, focal=st.floats(1e-300, 1000)),
+        lights=tuple(perhaps(light, radius=sizes) for light in scene.lights),
+        finishes=tuple(perhaps(finish, cone=st.one_of(st.just(0.0), st.floats(0, 90))) for finish in scene.finishes),
+        objects=tuple(perhaps(o, move=vectors) for o in scene.objects),
+    )
+
+
+@st.composite
 def scenes(draw: st.DrawFn, textures: Sequence[Path] = (), file: Path | None = None, most_objects: int = 6) -> Scene:
-    """Whole scenes; `textures` are the files that texmaps may name, `file` the scene's own."""
+    """Whole scenes without effects; `textures` are the files that texmaps may name, `file` the scene's own."""
     palette = draw(st.lists(pigments(textures), min_size=1, max_size=4))
     surfaces = draw(st.lists(finishes(), min_size=1, max_size=4))
     objects = st.builds(Object, st.integers(0, len(palette) - 1), st.integers(0, len(surfaces) - 1), shapes())

@@ -6,7 +6,7 @@ from pathlib import Path
 import pytest
 from hypothesis import given, settings
 from hypothesis import strategies as st
-from strategies import scenes
+from strategies import scenes, with_effects
 
 from converter.scene.model import Camera, Finish, Light, Object, Polyhedron, Scene, Solid, Sphere, Texmap
 from converter.scene.parser import parse_scene
@@ -26,7 +26,7 @@ SCENE = Scene(
 
 
 @settings(max_examples=60, deadline=None)
-@given(scenes(TEXTURES, FOLDER / "scene.in"))
+@given(scenes(TEXTURES, FOLDER / "scene.in").flatmap(with_effects))
 def test_a_scene_survives_writing_and_reading(scene: Scene) -> None:
     again = parse_scene(write_scene(scene), scene.file)
     assert again == scene
@@ -49,6 +49,42 @@ def test_every_finite_number_survives(x: float) -> None:
     scene = replace(SCENE, pigments=(Solid((x, -x, x)),), objects=())
     assert parse_scene(write_scene(scene)) == scene
     assert str(parse_scene(write_scene(scene)).pigments) == str(scene.pigments)  # the sign of zero too
+
+
+@settings(max_examples=30, deadline=None)
+@given(scenes(), st.data())
+def test_numbers_of_effects_that_are_0_are_the_plain_scene(scene: Scene, data: st.DataObject) -> None:
+    text = write_scene(scene).splitlines()
+    at = 5
+    for count, extra in ((1 + len(scene.lights), " 0"), (len(scene.pigments), ""), (len(scene.finishes), " -0")):
+        assert text[at] == str(count)
+        if extra:
+            k = data.draw(st.sampled_from([*range(count), None]))
+            lines = range(count) if k is None else [k]
+            for i in lines:
+                text[at + 1 + i] += extra
+        at += 2 + count + (0 if extra else sum(isinstance(p, Texmap) for p in scene.pigments))
+    text[3] += data.draw(st.sampled_from(["", " 0 0", " 0 7"]))
+    text[-1] += " move 0 0 -0" if scene.objects else ""
+    found = parse_scene("\n".join(text))
+    assert replace(found, camera=replace(found.camera, focal=0.0)) == scene
+
+
+def test_the_layout_of_optional_numbers() -> None:
+    scene = replace(
+        SCENE,
+        camera=replace(SCENE.camera, aperture=2.5, focal=100),
+        lights=(replace(SCENE.lights[0], radius=12),),
+        finishes=(replace(SCENE.finishes[0], cone=5),),
+        objects=tuple(replace(o, move=(1, 0, -0.5)) for o in SCENE.objects),
+    )
+    assert write_scene(scene) == (
+        "0 30 -200\n0 10 -100\n0 1 0\n40 2.5 100\n\n"
+        "2\n0 0 0 1 1 1 1 0 0\n60 160 -200 1 0.5 1 1 0 1e-07 12\n\n"
+        "2\ntexmap sky.ppm\n0 0.001 0 0.12\n0 0 0 0\nsolid 0.3333333333333333 1 1\n\n"
+        "1\n0.8 0 0 1 0 0 0 5\n\n"
+        "2\n0 0 sphere 0 0 0 600 move 1 0 -0.5\n1 0 polyhedron 2\n0 1 0 60\n1 0 0 -300 move 1 0 -0.5\n"
+    )
 
 
 def test_the_layout_is_the_statements() -> None:

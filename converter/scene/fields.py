@@ -22,3 +22,5 @@ class Numbers(NamedTuple):
 
 RGB = ("red", "green", "blue")
 """Names of a colour's numbers."""
+MOVE = "move"
+"""What an object's displacement follows."""

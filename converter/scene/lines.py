@@ -9,10 +9,10 @@ and the others are still read.
 from collections.abc import Callable
 from typing import Any
 
-from converter.scene.entries import CAMERA, FOVY
+from converter.scene.entries import CAMERA, FOVY, LENS, lens
 from converter.scene.errors import shown
-from converter.scene.fields import Lost, Numbers
-from converter.scene.reader import NOT_YET, Reader, has_digits
+from converter.scene.fields import MOVE, Lost, Numbers
+from converter.scene.reader import Reader, has_digits
 from converter.scene.sections import (
     SECTIONS,
     Line,
@@ -23,7 +23,7 @@ from converter.scene.sections import (
     miscounted,
     read_count,
 )
-from converter.scene.tokens import COMMENT_HINT, HUGE, LONG_LINE, SEPARATOR_HINT, found, hint, number, whole
+from converter.scene.tokens import COMMENT_HINT, HUGE, LONG_LINE, SEPARATOR_HINT, found, hint, whole
 from converter.shapes.polyhedron import PLANE, announced
 
 
@@ -67,9 +67,8 @@ def read_camera_by_lines(reader: Reader) -> int:
         if is_alone(line) and part is not FOVY:  # its line is missing, and this one is fovy's
             reader.misreads(at, f"expected {part.owner}, {len(part.fields)} numbers, found {shown(line[0])} alone")
             continue
-        extra = "an aperture and a focal distance after fovy" if part is FOVY else ""
         end = reader.text.line_end(at)
-        _read_entry(reader, at, end, _reads(part), part.owner, extra)
+        _read_entry(reader, at, end, _reads(part), part.owner)
         at = end
     return at
 
@@ -78,7 +77,8 @@ def _may_have_lens(reader: Reader, at: int) -> bool:
     """Whether the line may be fovy's, with an aperture and a focal distance, and is no vector too many."""
     line = reader.text.on_line(at)
     count = reader.text.on_line(at + len(line))
-    return len(line) == 3 and is_alone(count) and not is_alone(reader.text.on_line(at + len(line) + 1))
+    fits = 1 < len(line) <= len(FOVY.fields + LENS.fields)
+    return fits and is_alone(count) and not is_alone(reader.text.on_line(at + len(line) + 1))
 
 
 def _counts_lights(reader: Reader, at: int) -> bool:
@@ -117,9 +117,7 @@ def read_section_by_lines(
         if closes and len(found) + 1 == count:
             end = _last_end(reader, at, end, section, len(found))
         misread = reader.misread
-        entry = _read_entry(
-            reader, at, end, lambda r, a: section.read(r, a, len(found)), f"the {section.singular}", section.extra
-        )
+        entry = _read_entry(reader, at, end, lambda r, a: section.read(r, a, len(found)), f"the {section.singular}")
         if following is None and count is not None and len(found) >= count and reader.misread > misread:
             # Not one object more, but something else.
             reader.problems[-1:] = [(at, leftover(line[0], count))]
@@ -197,7 +195,7 @@ def _last_end(reader: Reader, at: int, end: int, section: Section, k: int) -> in
 
 
 def _read_entry(
-    reader: Reader, at: int, end: int, read: Callable[[Reader, int], tuple[Any, int]], owner: str, extra: str
+    reader: Reader, at: int, end: int, read: Callable[[Reader, int], tuple[Any, int]], owner: str
 ) -> Any | None:
     """Read the entry that the words from `at` to `end` should be; None, and a complaint, if they are not."""
     noted = len(reader.problems)
@@ -210,7 +208,7 @@ def _read_entry(
         if after == end:
             return entry
         strange = [problem for problem in reader.problems[noted:] if not has_digits(reader.text[problem[0]])]
-        wrong = strange[0] if strange else (after, _unexpected(reader, after, owner, extra))
+        wrong = strange[0] if strange else (after, _unexpected(reader, after, owner))
     finally:
         reader.limit = HUGE
     del reader.problems[noted:]  # about numbers that stand in the wrong place
@@ -218,18 +216,20 @@ def _read_entry(
     return None
 
 
-def _unexpected(reader: Reader, at: int, owner: str, extra: str) -> str:
+def _unexpected(reader: Reader, at: int, owner: str) -> str:
     """The message for a word behind an entry's last."""
     word = reader.text[at]
-    if extra and number(word) == number(word):
-        return f"{extra}: {NOT_YET}"
     if reader.text.line_start(at) == at:
         return f"unexpected {shown(word)} at the beginning of a line after {owner}{hint(word)}"
     return f"unexpected {shown(word)} after the last number of {owner}{hint(word)}"
 
 
 def _reads(part: Numbers) -> Callable[[Reader, int], tuple[Any, int]]:
-    return lambda reader, at: (reader.numbers(at, part, at), at + len(part.fields))
+    def read(reader: Reader, at: int) -> tuple[Any, int]:
+        found, end = reader.numbers(at, part, at), at + len(part.fields)
+        return (found, lens(reader, end)[1]) if part is FOVY else (found, end)
+
+    return read
 
 
 def _wrong_planes(reader: Reader, at: int, end: int) -> tuple[int, str] | None:
@@ -241,9 +241,12 @@ def _wrong_planes(reader: Reader, at: int, end: int) -> tuple[int, str] | None:
     if rest:
         return at + 4, f"unexpected {shown(head[4])} after the number of planes{hint(head[4])}"
     while line_at < end:
-        size = reader.text.line_end(line_at) - line_at
+        line = reader.text.on_line(line_at)
+        size = line.index(MOVE) if MOVE in line else len(line)
         if size != len(PLANE.fields):
             return line_at, f"{PLANE.owner} needs 4 numbers for {PLANE.purpose}, found {size} on its line"
         planes += 1
-        line_at += size
+        line_at += len(line)
+    if planes == whole(head[3]):
+        return None
     return at + 3, f"{announced(head[3])}, but {planes} {'follows' if planes == 1 else 'follow'}"

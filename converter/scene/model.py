@@ -16,21 +16,31 @@ Plane = tuple[float, float, float, float]
 
 @dataclass(frozen=True, slots=True)
 class Camera:
-    """A pinhole camera: `up` is a vector, `fovy` the full vertical angle in degrees."""
+    """A camera: `up` is a vector, `fovy` the full vertical angle in degrees.
+
+    With an aperture, its lens's radius, what lies at the distance `focal` along the view direction is in focus; without
+    one it is a pinhole camera.
+    """
 
     eye: Vector
     look_at: Vector
     up: Vector
     fovy: float
+    aperture: float = 0.0
+    focal: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
 class Light:
-    """A point light of the given colour, dimmed by 1 / (a + b d + c d^2) at distance d, (a, b, c) its attenuation."""
+    """A light of the given colour, dimmed by 1 / (a + b d + c d^2) at distance d, (a, b, c) its attenuation.
+
+    It is a disc of that radius that faces the point being lit, without one a point.
+    """
 
     position: Vector
     color: Color
     attenuation: Vector
+    radius: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -64,7 +74,10 @@ Pigment = Solid | Checker | Texmap
 
 @dataclass(frozen=True, slots=True)
 class Finish:
-    """How a surface answers light; `ior` as written, see `needs.eta`."""
+    """How a surface answers light; `ior` as written, see `needs.eta`.
+
+    Mirrored and transmitted rays are spread in a cone, `cone` its half-angle in degrees.
+    """
 
     ka: float
     kd: float
@@ -73,6 +86,7 @@ class Finish:
     kr: float
     kt: float
     ior: float
+    cone: float = 0.0
 
 
 @dataclass(frozen=True, slots=True)
@@ -121,12 +135,16 @@ Shape = Primitive | Csg
 
 @dataclass(frozen=True, slots=True)
 class Object:
-    """A shape with its pigment and finish, and the line of the file it starts on (0: made by a program)."""
+    """A shape with its pigment and finish, and the line of the file it starts on (0: made by a program).
+
+    `move` is its displacement, and that of its pigment, while the shutter is open.
+    """
 
     pigment: int
     finish: int
     shape: Shape
     line: int = field(default=0, compare=False)
+    move: Vector = (0.0, 0.0, 0.0)
 
 
 @dataclass(frozen=True, slots=True, weakref_slot=True)

@@ -24,9 +24,7 @@ class _NamingReader(Reader):
         self._names = names
 
     def attempt(self) -> Reader:
-        reader = _NamingReader(self.text, self._names)
-        reader.pigments, reader.finishes = self.pigments, self.finishes
-        return reader
+        return self._continued(_NamingReader(self.text, self._names))
 
     def numbers(self, at: int, wanted: Numbers, head: int) -> tuple[float, ...]:
         self._names.update((at + k, (wanted, field)) for k, field in enumerate(wanted.fields))

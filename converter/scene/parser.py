@@ -101,15 +101,25 @@ def _read_bytes(file: Path) -> bytes:
 
 
 def read_words(text: Words, start: Callable[[Words], Reader] = Reader) -> tuple[Scene | None, Reader]:
-    """The scene, if nothing is wrong, and the reader, which has noted what is wrong otherwise; `start` makes it."""
+    """The scene, if nothing is wrong, and the reader, which has noted what is wrong otherwise; `start` makes it.
+
+    What is a scene without the optional numbers is read as one: those that only its lines tell are looked for later.
+    """
     reader = start(text)
     if not text.has(0):
         reader.complain(0, "the scene is empty")
         return None, reader
     with _uncollected():
         scene = _read_scene(reader, in_lines=False)
+        if reader.misread and not reader.aligned:
+            extended = start(text)
+            extended.extended = True
+            scene = _read_scene(extended, in_lines=False)
+            if not extended.misread:
+                return scene, extended
         if reader.misread and text.size < LONGEST_BY_LINES and has_lines(reader):
             reader = start(text)
+            reader.extended = True
             _read_scene(reader, in_lines=True)
     return scene, reader
 
@@ -159,7 +169,7 @@ def _read_camera(reader: Reader, in_lines: bool) -> tuple[Camera | None, int]:
     """The camera and the index after it."""
 
     def by_words(attempt: Reader) -> tuple[Camera | None, int]:
-        return entries.camera(attempt, (0, 3, 6, 9)), 10
+        return entries.camera(attempt, 0)
 
     def by_lines(attempt: Reader) -> tuple[Camera | None, int]:
         return None, read_camera_by_lines(attempt)

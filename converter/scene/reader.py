@@ -7,7 +7,7 @@ from pathlib import Path
 
 from converter.pigments.table import PIGMENT_WORDS
 from converter.scene.errors import shown
-from converter.scene.fields import Lost, Numbers
+from converter.scene.fields import MOVE, Lost, Numbers
 from converter.scene.tokens import (
     COMMENT_HINT,
     HUGE,
@@ -23,11 +23,10 @@ from converter.scene.tokens import (
 from converter.shapes.csg_program import OPERATIONS
 from converter.shapes.table import SHAPE_READERS
 
-NOT_YET = "an addition to the format that is not supported yet"
 MOST_NOTED = 1000
 """Problems that are kept, so that a large file of nothing else takes little room: those told are the first of them."""
 PIGMENT_INDEX, FINISH_INDEX = "the pigment index", "the finish index"
-KEYWORDS = frozenset([*PIGMENT_WORDS, *SHAPE_READERS, "move"])
+KEYWORDS = frozenset([*PIGMENT_WORDS, *SHAPE_READERS, MOVE])
 """Words of the format that mean something by themselves."""
 _NO_NUMBERS = KEYWORDS.union(OPERATIONS)
 """Words that never stand where a number belongs: a number that is missing before one is noticed there."""
@@ -43,6 +42,8 @@ class Reader:
         text: the words with their places.
         folder: where texture files are looked for.
         limit: index after the last word that may be taken.
+        extended: whether entries may have the optional numbers, which only the end of a line tells from what follows.
+        aligned: an object has been read, so all numbers before it are what they were taken for.
         problems: address of a word and what is wrong with it, `MOST_NOTED` of them at most.
         unnoted: how many more there are.
         misread: how many of all these are about words that are missing or left over.
@@ -58,6 +59,8 @@ class Reader:
         self.text = text
         self.folder = Path() if text.file is None else text.file.parent
         self.limit = HUGE
+        self.extended = False
+        self.aligned = False
         self.problems: list[tuple[int, str]] = []
         self.unnoted = 0
         self.misread = 0
@@ -75,8 +78,11 @@ class Reader:
 
     def attempt(self) -> "Reader":
         """A reader of the same words that has found nothing wrong yet."""
-        reader = Reader(self.text)
-        reader.pigments, reader.finishes = self.pigments, self.finishes
+        return self._continued(Reader(self.text))
+
+    def _continued(self, reader: "Reader") -> "Reader":
+        """Another reader that goes on from here."""
+        reader.pigments, reader.finishes, reader.extended = self.pigments, self.finishes, self.extended
         return reader
 
     def adopt(self, attempt: "Reader") -> None:
@@ -85,6 +91,7 @@ class Reader:
         self.unnoted += attempt.unnoted + max(0, len(attempt.problems) - kept)
         self.problems += attempt.problems[:kept]
         self.misread += attempt.misread
+        self.aligned |= attempt.aligned
         self.notes += attempt.notes
         self.warnings += attempt.warnings
         self.textures.update(attempt.textures)
@@ -137,6 +144,18 @@ class Reader:
     def numbers(self, at: int, wanted: Numbers, head: int) -> tuple[float, ...]:
         """The numbers from the word `at` on, NaN for each that is none; `head` is the word that asks for them."""
         return self.good_numbers(at, len(wanted.fields)) or self._faulty_numbers(at, wanted, head)
+
+    def optional(self, head: int, at: int, wanted: Numbers) -> tuple[float, ...] | None:
+        """The numbers, from the word `at` on, that may stand behind others on a line; None if there are none.
+
+        There are if the entry from the word `head` on has a line of its own, and so many words are left on it; where
+        the entry is known to end with the line, if any are.
+        """
+        if not self.extended or self.text.line_start(at - 1) != head:
+            return None
+        left = min(self.text.line_end(at - 1), self.limit) - at
+        bounded = self.limit < HUGE
+        return self.numbers(at, wanted, at) if left == len(wanted.fields) or (bounded and left > 0) else None
 
     def good_numbers(self, at: int, count: int) -> tuple[float, ...] | None:
         """So many numbers, if so many words follow from the word `at` on, and every one of them is a number."""

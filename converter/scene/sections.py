@@ -5,9 +5,9 @@ from typing import Any, NamedTuple
 
 from converter.pigments.table import PIGMENT_WORDS
 from converter.scene import entries
-from converter.scene.entries import FINISH, LIGHT
+from converter.scene.entries import CONE, FINISH, LIGHT, RADIUS
 from converter.scene.errors import place, shown
-from converter.scene.fields import Lost
+from converter.scene.fields import MOVE, Lost
 from converter.scene.model import Object, Polyhedron
 from converter.scene.reader import Reader, is_name
 from converter.scene.tokens import HUGE, hint, number, whole, why_no_number
@@ -25,7 +25,6 @@ class Section(NamedTuple):
         read: reads the entry with the given number at the given word, and gives it and the index after it.
         opens: whether a line (its words) is how people write an entry, or the beginning of one.
         goes_on: whether an entry that begins with this word and has so many words so far goes on with this next line.
-        extra: what one number more on an entry's line would mean; empty if nothing.
     """
 
     plural: str
@@ -34,7 +33,6 @@ class Section(NamedTuple):
     read: Callable[[Reader, int, int], tuple[Any, int]]
     opens: Callable[[Line], bool]
     goes_on: Callable[[str, int, Line], bool]
-    extra: str = ""
 
 
 def is_alone(line: Line) -> bool:
@@ -53,7 +51,7 @@ def _pigment_goes_on(first: str, size: int, line: Line) -> bool:
 
 
 def _opens_object(line: Line) -> bool:
-    return any(map(is_name, line[:3]))
+    return any(is_name(word) and word != MOVE for word in line[:3])
 
 
 SECTIONS = (
@@ -62,9 +60,8 @@ SECTIONS = (
         "light",
         1,
         entries.light,
-        lambda line: _is_numeric(line) and len(line) == len(LIGHT.fields),
+        lambda line: _is_numeric(line) and 0 <= len(line) - len(LIGHT.fields) <= len(RADIUS.fields),
         lambda first, size, line: _is_numeric(line) and size + len(line) <= len(LIGHT.fields),
-        "a light's 10th number (its radius, for soft shadows)",
     ),
     Section("pigments", "pigment", 0, entries.pigment, lambda line: bool(line) and is_name(line[0]), _pigment_goes_on),
     Section(
@@ -72,9 +69,8 @@ SECTIONS = (
         "finish",
         0,
         entries.finish,
-        lambda line: _is_numeric(line) and len(line) == len(FINISH.fields),
+        lambda line: _is_numeric(line) and 0 <= len(line) - len(FINISH.fields) <= len(CONE.fields),
         lambda first, size, line: _is_numeric(line) and size + len(line) <= len(FINISH.fields),
-        "a finish's 8th number (its cone's angle, for glossy rays)",
     ),
     Section("objects", "object", 0, entries.object_, _opens_object, lambda first, size, line: not _opens_object(line)),
 )

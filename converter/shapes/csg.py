@@ -6,7 +6,7 @@ from functools import partial
 from typing import TYPE_CHECKING, Any, Literal, assert_never, cast
 
 from converter.scene.errors import shown
-from converter.scene.fields import Lost
+from converter.scene.fields import MOVE, Lost
 from converter.scene.model import Csg, Operand, Plane, Polyhedron, Primitive, Quadric, Shape, Sphere, Vector
 from converter.scene.tokens import found, whole
 from converter.shapes.csg_places import box_of, inside_point, values_around
@@ -49,7 +49,7 @@ def read(reader: "Reader", at: int) -> tuple[Csg, int]:
 
 def _read(reader: "Reader", at: int, level: int, leaves: int) -> tuple[Csg, int]:
     """A csg that is the `level`-th in one another, and has so many leaves before it."""
-    from converter.scene.entries import object_  # late: it reads all kinds of shapes, of which this is one
+    from converter.scene.entries import body  # late: it reads all kinds of shapes, of which this is one
     from converter.shapes.table import SHAPE_READERS
 
     if level > MOST_LEVELS:
@@ -63,14 +63,14 @@ def _read(reader: "Reader", at: int, level: int, leaves: int) -> tuple[Csg, int]
     operands: list[Operand] = []
     while len(operands) < count:
         sign = _sign(reader, at, head, len(operands))
-        operand, end = object_(
-            reader, at + 1, 0, {**SHAPE_READERS, "csg": partial(_read, level=level + 1, leaves=leaves)}
-        )
+        operand, end = body(reader, at + 1, {**SHAPE_READERS, "csg": partial(_read, level=level + 1, leaves=leaves)})
         leaves += sum(1 for _ in written_leaves(operand.shape)) if isinstance(operand.shape, Csg) else 1
         if leaves > MOST_LEAVES:
             raise Lost(at + 3, f"a csg may have {MOST_LEAVES} spheres, polyhedra and quadrics at most, found more")
         operands.append(Operand(sign, operand.shape))
         at = end
+        if len(operands) < count and reader.has(at) and reader.text[at] == MOVE:
+            raise Lost(at, "an operand does not move by itself: 'move' stands behind the last one, for the whole csg")
     if level == 1 and reader.has(at) and reader.text[at] in OPERATIONS:
         raise Lost(head, f"{_announced(word)}, but another one follows")
     return Csg(tuple(operands)), at
