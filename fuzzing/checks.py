@@ -15,6 +15,7 @@ from converter.analysis.notices import scene_notices
 from converter.commands import main, raytrace
 from converter.errors import ExportError
 from converter.images import ppm
+from converter.renderers.base import EffectUnavailable
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
 from converter.scene.errors import SceneError
@@ -64,8 +65,9 @@ def convert(scene: Scene) -> None:
     scene_needs(scene, SETTINGS)
     scene_notices(scene, SETTINGS)
     cutoff_bound(scene, SETTINGS)
-    scene_description(scene, SETTINGS, with_shapes=False)
-    with suppress(PolyhedronError):
+    with suppress(EffectUnavailable):
+        scene_description(scene, SETTINGS, with_shapes=False)
+    with suppress(EffectUnavailable, PolyhedronError):
         scene_description(scene, SETTINGS)
     with suppress(ExportError):
         povray_scene(scene, SETTINGS)
@@ -74,12 +76,14 @@ def convert(scene: Scene) -> None:
 def draw(scene: Scene) -> None:
     """Draw a scene by the native tracer, in both ways to search it."""
     for search in ("brute", "bvh"):
-        assert_finite(NativeRenderer(search=search).render(scene, SETTINGS).pixels, scene, SETTINGS)
+        with suppress(EffectUnavailable):
+            assert_finite(NativeRenderer(search=search).render(scene, SETTINGS).pixels, scene, SETTINGS)
 
 
 def draw_with_mitsuba(scene: Scene) -> None:
     """Draw a scene by Mitsuba, through the tree, whose kernel most scenes share."""
-    assert_finite(MitsubaRenderer("llvm_ad_rgb", "bvh").render(scene, SETTINGS).pixels, scene, SETTINGS)
+    with suppress(EffectUnavailable):
+        assert_finite(MitsubaRenderer("llvm_ad_rgb", "bvh").render(scene, SETTINGS).pixels, scene, SETTINGS)
 
 
 def run_programs(data: bytes, folder: Path) -> None:

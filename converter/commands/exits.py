@@ -25,6 +25,7 @@ _UNUSABLE = (
     ("converter.errors", "ExportError"),
     ("converter.to_mitsuba.meshes", "PolyhedronError"),
     ("converter.renderers.povray", "PovrayError"),
+    ("converter.renderers.base", "EffectUnavailable"),
 )
 _UNAVAILABLE = (("converter.renderers.base", "RendererUnavailable"), ("mitsuba_plugins.backend", "BackendError"))
 """Modules and the errors in them that a user can mend; by name, so that telling one loads nothing."""

@@ -67,12 +67,17 @@ def run(arguments: argparse.Namespace) -> int:
 
 def _print(found: dict[str, Any]) -> None:
     print_table(_overview(found), title=found["file"])
+    radius = ("radius",) if any(light["radius"] for light in found["lights"]) else ()
     _print_rows(
         "lights",
-        ("", "position", "colour", "attenuation"),
-        "r",
+        ("", "position", "colour", "attenuation", *radius),
+        "rlll" + "r" * len(radius),
         [
-            (str(light["light"]), *(_numbers(light[key]) for key in ("position", "color", "attenuation")))
+            (
+                str(light["light"]),
+                *(_numbers(light[key]) for key in ("position", "color", "attenuation")),
+                *(f"{light[key]:g}" for key in radius),
+            )
             for light in found["lights"]
         ],
     )
@@ -82,15 +87,16 @@ def _print(found: dict[str, Any]) -> None:
         "rllr",
         [(str(p["pigment"]), p["kind"], PIGMENT_WORDS[p["kind"]].summary(p), _uses(p)) for p in found["pigments"]],
     )
+    coefficients = COEFFICIENTS + (("cone",) if any(f["cone"] for f in found["finishes"]) else ())
     _print_rows(
         "finishes",
-        ("", "line", *COEFFICIENTS, "ior is", "n1/n2", "objects"),
-        "rrrrrrrrrlrr",
+        ("", "line", *coefficients, "ior is", "n1/n2", "objects"),
+        "rr" + "r" * len(coefficients) + "lrr",
         [
             (
                 str(f["finish"]),
                 str(f["line"] or ""),
-                *(f"{f[key]:g}" for key in COEFFICIENTS),
+                *(f"{f[key]:g}" for key in coefficients),
                 f["ior_read_as"] or "not used",
                 f"{f['n1/n2']:.4g}" if f["ior_read_as"] else "",
                 _uses(f),
@@ -129,6 +135,12 @@ def _print(found: dict[str, Any]) -> None:
             for q in found["quadrics"]
         ],
     )
+    _print_rows(
+        "moving objects",
+        ("object", "line", "displacement"),
+        "rr",
+        [(str(o["object"]), str(o["line"] or ""), _numbers(o["move"])) for o in found["moving"]],
+    )
     for csg in found["csgs"][:MOST_ROWS]:
         print()
         print("\n".join(csg_lines(csg)))
@@ -152,6 +164,7 @@ def _overview(found: dict[str, Any]) -> list[tuple[str, str]]:
     rows = [
         ("camera", f"eye {_numbers(camera['eye'])}, looks at {_numbers(camera['look_at'])}"),
         ("", f"up {_numbers(camera['up'])}, fovy {camera['fovy']:g} degrees"),
+        *([("", f"aperture {camera['aperture']:g}, in focus at {camera['focal']:g}")] if camera["aperture"] else []),
         ("ambient light", _numbers(found["ambient"])),
         ("background", _numbers(found["background"])),
         ("objects", kinds or "none"),
@@ -162,7 +175,7 @@ def _overview(found: dict[str, Any]) -> list[tuple[str, str]]:
         count = objects["unbounded"]
         rows.append(("unbounded", f"{count} object{'' if count == 1 else 's'}"))
         rows.append(("", f"whose meshes end at {_numbers(box['low'])} and {_numbers(box['high'])}"))
-    rows.append(("needs", ", ".join(shading + bounces) or "nothing but ambient light"))
+    rows.append(("needs", ", ".join(shading + bounces + needs["effects"]) or "nothing but ambient light"))
     if bounces:
         split = "rays split in two" if needs["branches"] else "every ray has one successor"
         rows.append(("depth", f"{needs['max_depth']} bounces{RULES[needs['max_depth_rule']]}, {split}"))

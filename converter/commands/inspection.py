@@ -39,6 +39,7 @@ def inspect_scene(scene: Scene, settings: Settings) -> dict[str, Any]:
         "polyhedra": polyhedra,
         "quadrics": _quadrics(scene, drawn, needs),
         "csgs": csg_trees(scene, drawn, needs),
+        "moving": [{"object": i, "line": o.line, "move": o.move} for i, o in enumerate(scene.objects) if any(o.move)],
         "closing_box": _closing_box(drawn, needs, settings),
         "unused": {
             "pigments": [i for i in range(len(scene.pigments)) if i not in needs.pigments],
@@ -50,6 +51,7 @@ def inspect_scene(scene: Scene, settings: Settings) -> dict[str, Any]:
             "branches": needs.branches,
             "lit": needs.lit,
             "glossy": needs.glossy,
+            "effects": list(needs.effects),
             "max_depth": needs.max_depth,
             "max_depth_rule": needs.depth.rule,
         },

@@ -66,11 +66,13 @@ def native_instead(name: str, instead: str = "--method native") -> Iterator[None
         RendererUnavailable: as within it, with more to say.
 
     """
-    from converter.renderers.base import RendererUnavailable
+    from converter.renderers.base import EffectUnavailable, RendererUnavailable
     from converter.renderers.methods import METHODS, find_method
 
     try:
         yield
+    except EffectUnavailable:
+        raise
     except RendererUnavailable as error:
         if find_method(name).family != "mitsuba" or METHODS[REFERENCE].missing() is not None:
             raise

@@ -4,7 +4,7 @@ import math
 from bisect import bisect_left
 from dataclasses import dataclass
 
-from converter.scene.entries import FINISH, FOVY
+from converter.scene.entries import CONE, FINISH, FOVY, LENS, RADIUS
 from converter.scene.fields import RGB, Numbers
 from converter.scene.names import read_names
 from converter.scene.tokens import number, word_spans
@@ -14,7 +14,7 @@ STEPS = 100
 MOST_NAMED = 1 << 16
 """Characters of a text whose numbers are named; a larger one is not read whenever the cursor moves."""
 _SHARES = frozenset({*RGB, "ka", "kd", "ks", "kr", "kt"})
-_LENGTHS = frozenset({"radius", "size", "edge"})
+_LENGTHS = frozenset({"radius", "size", "edge", "aperture", "focal distance"})
 
 
 @dataclass(frozen=True, slots=True)
@@ -70,8 +70,12 @@ def _range(value: float, numbers: Numbers, field: str) -> tuple[float, float]:
         return min(0.1, value), max(3.0, value)
     if numbers is FINISH and field == "alpha":
         return 0.0, max(200.0, 2 * value)
+    if numbers is CONE:
+        return 0.0, 90.0
     if field in _LENGTHS and value > 0:
         return value / 100, 2 * value
+    if numbers is RADIUS or numbers is LENS:  # which may be 0
+        return 0.0, 1.0
     return _around(value)
 
 

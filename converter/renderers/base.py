@@ -1,10 +1,12 @@
 """The interface between a renderer and everything that uses one."""
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, Protocol, TypeGuard
 
+from converter.scene.effects import Effect
 from converter.scene.model import Scene
+from converter.scene.needs import SceneNeeds
 from converter.scene.settings import Settings
 
 if TYPE_CHECKING:
@@ -46,6 +48,22 @@ class RendererUnavailable(Exception):  # noqa: N818 - what it says
     """A renderer cannot run on this machine; the message says what is missing and what to install."""
 
 
+class EffectUnavailable(RendererUnavailable):
+    """A renderer cannot draw an effect that a scene has; the message says which, and what has it."""
+
+
+def refuse_effects(needs: SceneNeeds, renderer: str, drawn: Collection[Effect] = ()) -> None:
+    """See that a scene has no effects but those `drawn`; `renderer` is its name in a sentence.
+
+    Raises:
+        EffectUnavailable: it has.
+
+    """
+    for effect, cause in needs.effects.items():
+        if effect not in drawn:
+            raise EffectUnavailable(f"{cause}, and {renderer} does not draw {effect}")
+
+
 class Renderer(Protocol):
     """Draws scenes."""
 
@@ -53,7 +71,7 @@ class Renderer(Protocol):
         """Draw `scene`.
 
         Raises:
-            RendererUnavailable: it cannot run here.
+            RendererUnavailable: it cannot run here, or not draw an effect that the scene has.
             Interrupted: Ctrl-C while it was drawing.
 
         """

@@ -37,7 +37,7 @@ class MitsubaRenderer:
         """Draw `scene`.
 
         Raises:
-            RendererUnavailable: no variant runs here.
+            RendererUnavailable: no variant runs here, or an effect that the scene has cannot be drawn.
             ValueError: a texture cannot be read, or a polyhedron cannot be made into a mesh.
             Interrupted: Ctrl-C while it was drawing.
 

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from converter.analysis.coplanar import with_planes_shared
 from converter.pigments.table import pigment_kind
-from converter.renderers.base import Interrupted, Progress, RendererUnavailable, Rendering
+from converter.renderers.base import Interrupted, Progress, RendererUnavailable, Rendering, refuse_effects
 from converter.scene.geometry import simplified
 from converter.scene.model import Scene
 from converter.scene.needs import SceneNeeds, scene_needs
@@ -41,7 +41,7 @@ class NativeRenderer:
         """Draw `scene`.
 
         Raises:
-            RendererUnavailable: the native module is not built.
+            RendererUnavailable: the native module is not built, or cannot draw an effect that the scene has.
             ValueError: a texture cannot be read, or `settings` make no sense.
             Interrupted: Ctrl-C while it was drawing.
 
@@ -120,7 +120,13 @@ def available_cores() -> int:
 
 
 def build_scene(scene: Scene, needs: SceneNeeds) -> Any:
-    """The tracer's scene. Pigments and finishes that no object uses are left out, so no texture is read in vain."""
+    """The tracer's scene. Pigments and finishes that no object uses are left out, so no texture is read in vain.
+
+    Raises:
+        EffectUnavailable: the tracer cannot draw it.
+
+    """
+    refuse_effects(needs, "the native tracer")
     native = native_module().Scene()
     native.set_camera(scene.camera.eye, scene.camera.look_at, scene.camera.up, scene.camera.fovy)
     native.set_ambient(scene.ambient)

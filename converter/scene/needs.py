@@ -4,6 +4,7 @@ import sys
 from dataclasses import dataclass
 
 from converter.scene.depth import DepthLimit, depth_limit, follows
+from converter.scene.effects import Effect, scene_effects
 from converter.scene.geometry import scene_facts
 from converter.scene.model import Color, Finish, Scene, Vector
 from converter.scene.settings import IorReading, Settings
@@ -21,6 +22,7 @@ class SceneNeeds:
         branches: a ray may be followed by both at once.
         lit: a surface has kd or ks > 0 and there is a light: shadow rays are needed.
         glossy: a lit surface has ks > 0: highlights are needed.
+        effects: what of distributed ray tracing can be seen, each with what has it first, and where.
         depth: how many bounces to follow after the primary ray, and why.
         background: linear RGB of rays that hit nothing.
         facts: what is known of each object's shape; the columns below are taken from it.
@@ -41,6 +43,7 @@ class SceneNeeds:
     branches: bool
     lit: bool
     glossy: bool
+    effects: dict[Effect, str]
     depth: DepthLimit
     background: Color
     facts: tuple[Facts, ...]
@@ -53,6 +56,11 @@ class SceneNeeds:
     def max_depth(self) -> int:
         """Bounces to follow after the primary ray."""
         return self.depth.bounces
+
+    @property
+    def sampled(self) -> bool:
+        """Whether anything is random."""
+        return bool(self.effects)
 
     @property
     def bounces(self) -> bool:
@@ -71,6 +79,8 @@ def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
     facts = scene_facts(scene)
     depth = depth_limit(used, settings)
     bounces = depth.bounces > 0
+    lit = bool(scene.lights) and any(f.kd > 0 or f.ks > 0 for f in used)
+    spreading = [i for i, f in zip(finishes, used, strict=True) if bounces and _is_left(f, largest, settings.cutoff)]
     return SceneNeeds(
         pigments=tuple(sorted({o.pigment for o in scene.objects})),
         finishes=finishes,
@@ -78,8 +88,9 @@ def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
         reflects=reflects and bounces,
         refracts=refracts and bounces,
         branches=branches and bounces,
-        lit=bool(scene.lights) and any(f.kd > 0 or f.ks > 0 for f in used),
+        lit=lit,
         glossy=bool(scene.lights) and any(f.ks > 0 for f in used),
+        effects=scene_effects(scene, lit, spreading),
         depth=depth,
         background=scene.ambient if settings.background is None else settings.background,
         facts=facts,
@@ -88,6 +99,11 @@ def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
         boxes=tuple((f.low, f.high) for f in facts),
         bounded=tuple(f.bounded for f in facts),
     )
+
+
+def _is_left(finish: Finish, largest: float, cutoff: float) -> bool:
+    """Whether a mirrored or a transmitted ray may leave from a finish."""
+    return follows(max(finish.kr, finish.kt), largest, cutoff)
 
 
 def eta(finish: Finish, reading: IorReading) -> float:

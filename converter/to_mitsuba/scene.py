@@ -4,6 +4,7 @@ from typing import Any
 
 from converter.analysis.coplanar import with_planes_shared
 from converter.pigments.table import pigment_kind
+from converter.renderers.base import refuse_effects
 from converter.scene.geometry import simplified
 from converter.scene.model import Scene
 from converter.scene.needs import scene_needs
@@ -29,12 +30,14 @@ def scene_description(
     for intersections that use them: "mesh", "offset", "ulp".
 
     Raises:
+        EffectUnavailable: the integrator cannot draw it.
         TextureError: a texture that is used cannot be read.
         PolyhedronError, ValueError: as `shapes` has it.
 
     """
     scene = with_planes_shared(simplified(scene))
     needs = scene_needs(scene, settings)
+    refuse_effects(needs, "Mitsuba with our plugins")
     geometry = exact_surfaces(scene, needs)
     found: dict[str, Any] = {}
     if with_shapes:

@@ -63,6 +63,7 @@ def povray_scene(scene: Scene, settings: Settings, name: str = "scene") -> Povra
         if (image := pigment_kind(scene.pigments[i]).povray_image(scene.pigments[i], f"{name}_pigment_{i}"))
     }
     omissions: list[str] = []
+    omissions += [f"{cause}, and is drawn without {effect}" for effect, cause in needs.effects.items()]
     if has_horizon(scene, needs):
         omissions.append(f"nothing is seen that is farther away than {FARTHEST / factor:.3g}")
     parts = [

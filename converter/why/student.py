@@ -43,7 +43,7 @@ LEVELS = "levels"
 """A part of a tracer, see `Deviation.part`."""
 
 _KNOWN = {
-    Camera: {"eye", "look_at", "up", "fovy"},
+    Camera: {"eye", "look_at", "up", "fovy", "focal"},  # a focal distance means nothing without an aperture
     Light: {"position", "color", "attenuation"},
     Finish: {"ka", "kd", "ks", "alpha", "kr", "kt", "ior"},
     Object: {"pigment", "finish", "shape", "line"},

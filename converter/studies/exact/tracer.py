@@ -14,6 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from converter.images.texture import read_texture
+from converter.renderers.base import refuse_effects
 from converter.scene.model import (
     Camera,
     Checker,
@@ -102,6 +103,7 @@ class ExactTracer:
 
     Raises:
         Undecided: the numbers cannot express the camera; `pixel` raises it, too.
+        EffectUnavailable: the scene is sampled.
 
     """
 
@@ -109,6 +111,7 @@ class ExactTracer:
         self._numbers = arithmetic or Decimals()
         self._scene, self._settings = scene, settings
         needs = scene_needs(scene, settings)
+        refuse_effects(needs, "the exact tracer")
         self._max_depth, self._background = needs.max_depth, needs.background
         self._ties: set[str] = set()
         with self._numbers.context():
