@@ -184,6 +184,21 @@ def test_sections_may_be_empty_but_for_the_lights() -> None:
     assert (scene.lights, scene.pigments, scene.finishes, scene.objects) == ((), (), (), ())
 
 
+def test_a_number_at_the_end_of_a_line_may_still_be_a_count() -> None:
+    """What is a scene without optional numbers stays that one, wherever its lines end."""
+    head = "0 0 0\n0 0 1\n0 1 0\n40 1\n0 0 0 .1 .2 .3 0 0 0 0\n"
+    assert parse_scene(f"{head}0 0\n") == parse_scene(" ".join(f"{head}0 0".split()))
+    scene = parse_scene(f"{head[:-2]}1\nsolid 1 1 1 1\n1 0 0 1 0 0 0 1\n0 0 sphere 0 0 0 1\n")
+    assert scene.finishes[0].cone == 0
+    assert len(scene.objects) == 1
+
+
+def test_a_csg_moves_as_a_whole() -> None:
+    text = TEXT.replace("\n3\n0 0 s", "\n4\n0 0 csg 2\n+ 0 0 sphere 0 0 0 2\n- 0 0 sphere 1 0 0 2 move 3 4 5\n0 0 s")
+    assert parse_scene(text).objects[0].move == (3, 4, 5)
+    assert parse_scene(text.replace(" move", "\nmove")) == parse_scene(text)
+
+
 def test_comments_may_be_in_another_encoding() -> None:
     text = ("# cena com esferas e chão\n" + TEXT).encode("latin-1")
     assert parse_scene(text) == SCENE

@@ -276,6 +276,7 @@ CASES = [
     (22, "sphere 0 32.7 0 20", "quadric 0 0 0 0 0 0 0 0 0 0", 22, 5, f"{NO_SURFACE}: every point is inside{INSIDE}"),
     (22, "sphere 0 32.7 0 20", "csg 1\n+ 0 0 sphere 1 1 1", 23, 7, f"{SPHERE} 3 before the end of the line"),
     (22, "20", "20 move 1 0", 22, 24, f"{MOVE} 2 before the end of the line"),
+    (22, "20", "20\nmove 1 0", 23, 1, f"{MOVE} 2 before the end of the line"),
     (22, "20", "20 move 1 y 0", 22, 31, "move's y must be a number, found 'y'"),
     (22, "20", "20 move 1 nan 0", 22, 31, "move's y must be a number, found 'nan', which is not finite"),
     (22, "20", "20 move 1 0 0 7", 22, 35, "unexpected '7' after the last number of the object"),
