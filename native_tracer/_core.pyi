@@ -37,8 +37,8 @@ class Scene:
     def set_background(self, color: _Triple) -> None:
         """The colour of rays that hit nothing."""
 
-    def add_light(self, position: _Triple, color: _Triple, attenuation: _Triple) -> int:
-        """Add a point light, and return its index."""
+    def add_light(self, position: _Triple, color: _Triple, attenuation: _Triple, radius: float = 0.0) -> int:
+        """Add a light, a point or a disc that faces the point being lit, and return its index."""
 
     def add_solid(self, color: _Triple) -> int:
         """Add a pigment of one colour, and return its index."""
@@ -101,6 +101,7 @@ def render(
     cutoff: float,
     max_depth: int,
     samples: int = 1,
+    seed: int = 0,
     corner: bool = True,
     blinn: bool = False,
     precision: Literal["float", "double", "long double"] = "double",
@@ -127,6 +128,7 @@ def trace_pixel(
     cutoff: float,
     max_depth: int,
     samples: int = 1,
+    seed: int = 0,
     corner: bool = True,
     blinn: bool = False,
     precision: Literal["float", "double", "long double"] = "double",

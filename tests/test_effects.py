@@ -41,7 +41,7 @@ CAUSES = {
     "glossy rays": "scene:16: finish 1 has a cone",
     "motion": "scene:20: object 1 moves",
 }
-NATIVE: set[str] = set()
+NATIVE = {"soft shadows"}
 """What the native tracer draws."""
 
 

@@ -10,13 +10,14 @@ from converter.shapes.table import shape_kind
 
 
 def scene_notices(scene: Scene, settings: Settings) -> list[str]:
-    """One line for each thing: what its parser chose, plates without thickness, what is shut in or out, and what is
-    surely not meant.
+    """One line for each thing: what its parser chose, that it is sampled, plates without thickness, what is shut in or
+    out, and what is surely not meant.
 
     `ior_notices` are not among them: they are for whoever looks into a scene, or draws it without `--ior`.
     """
     return [
         *scene.notes,
+        *_sampling_notices(scene, settings),
         *_plate_notices(scene, settings),
         *enclosure_notices(scene, settings),
         *oddity_notices(scene, settings),
@@ -34,6 +35,15 @@ def ior_notices(scene: Scene, settings: Settings) -> list[str]:
     reading = "and read as the material's own index, n2/n1 (--ior ratio reads n1/n2)"
     where = f"{place(scene.file, line)}: finish {k}"
     return [f"{where}: ior {scene.finishes[k].ior:g} is above 1 {reading}{so_are(len(found) - 1)}"]
+
+
+def _sampling_notices(scene: Scene, settings: Settings) -> list[str]:
+    """One line if there are more rays a pixel than one because something is random."""
+    needs = scene_needs(scene, settings)
+    if not needs.sampled or settings.samples is not None:
+        return []
+    cause = next(iter(needs.effects.values()))
+    return [f"{cause}: {needs.samples} rays a pixel are drawn (--samples asks for another number)"]
 
 
 def _plate_notices(scene: Scene, settings: Settings) -> list[str]:

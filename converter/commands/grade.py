@@ -110,7 +110,7 @@ def run(arguments: argparse.Namespace) -> int:
     from converter.grade.tasks import NoTask, read_tasks
     from converter.grade.verdicts import judge_all
 
-    if arguments.samples != 1:
+    if arguments.samples not in (None, 1):
         raise UsageError("--samples: pictures of one ray a pixel are graded")
     if "/" in arguments.picture or arguments.picture in ("", ".", ".."):
         raise UsageError(f"--picture: must be a file's name, found {arguments.picture!r}")

@@ -10,7 +10,7 @@ from typing import NoReturn
 from converter.commands.exits import UsageError
 from converter.scene.depth import MAX_DEPTH
 from converter.scene.model import Color
-from converter.scene.settings import MOST_THREADS, Settings
+from converter.scene.settings import MOST_THREADS, SAMPLES, Settings
 
 MAX_SIZE = 65535
 MAX_SAMPLES = 65536
@@ -185,9 +185,8 @@ def _add_picture_options(group: argparse._ArgumentGroup) -> None:
     group.add_argument(
         "--samples",
         type=_samples,
-        default=DEFAULTS.samples,
         metavar="N",
-        help="rays a pixel, a square number (%(default)s)",
+        help=f"rays a pixel, a square number (1, and {SAMPLES} where something is random)",
     )
 
 

@@ -82,7 +82,7 @@ class MitsubaRenderer:
         self._start()
         from converter.renderers.mitsuba_pixel import trace_pixels
 
-        return trace_pixels(self._load(scene, settings), settings, pixels)
+        return trace_pixels(self._load(scene, settings), pixels)
 
     def _start(self) -> str:
         """Load Mitsuba, and return the variant."""

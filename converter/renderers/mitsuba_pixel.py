@@ -11,12 +11,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from converter.renderers.records import MOST_RAYS, HitRecord, LightRecord, PixelRecord, RayKind, RayRecord
-from converter.scene.settings import Settings
 from mitsuba_plugins.intersection.columns import column
 from mitsuba_plugins.intersection.rays import NOTHING, UPRIGHT, Ray, lanes
 
 
-def trace_pixels(scene: Any, settings: Settings, pixels: Sequence[tuple[int, int]]) -> list[PixelRecord]:
+def trace_pixels(scene: Any, pixels: Sequence[tuple[int, int]]) -> list[PixelRecord]:
     """Trace pixels (column, row) of a loaded scene.
 
     Raises:
@@ -26,7 +25,7 @@ def trace_pixels(scene: Any, settings: Settings, pixels: Sequence[tuple[int, int
     import mitsuba as mi
 
     integrator, sensor = scene.integrator(), scene.sensors()[0]
-    offsets = integrator.sample_offsets(settings.samples)
+    offsets = integrator.sample_offsets(sensor.sampler().sample_count())
     x, y = (np.array([pixel[k] + offset[k] for pixel in pixels for offset in offsets], float) for k in (0, 1))
     with integrator.prepared(scene, sensor):
         rays = _Rays.of(

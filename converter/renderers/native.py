@@ -10,6 +10,7 @@ from typing import TYPE_CHECKING, Any, Literal
 from converter.analysis.coplanar import with_planes_shared
 from converter.pigments.table import pigment_kind
 from converter.renderers.base import Interrupted, Progress, RendererUnavailable, Rendering, refuse_effects
+from converter.scene.effects import Effect
 from converter.scene.geometry import simplified
 from converter.scene.model import Scene
 from converter.scene.needs import SceneNeeds, scene_needs
@@ -21,6 +22,8 @@ if TYPE_CHECKING:
 
 Precision = Literal["float", "double", "long double"]
 Search = Literal["auto", "brute", "bvh"]
+EFFECTS: tuple[Effect, ...] = ("soft shadows",)
+"""What of distributed ray tracing it draws."""
 
 
 @dataclass(frozen=True)
@@ -88,7 +91,8 @@ class NativeRenderer:
 
     def _options(self, settings: Settings, needs: SceneNeeds) -> dict[str, Any]:
         return {
-            "samples": settings.samples,
+            "samples": needs.samples,
+            "seed": settings.seed,
             "corner": settings.pixel == "corner",
             "blinn": settings.specular == "blinn",
             "cutoff": settings.cutoff,
@@ -126,14 +130,14 @@ def build_scene(scene: Scene, needs: SceneNeeds) -> Any:
         EffectUnavailable: the tracer cannot draw it.
 
     """
-    refuse_effects(needs, "the native tracer")
+    refuse_effects(needs, "the native tracer", EFFECTS)
     native = native_module().Scene()
     native.set_camera(scene.camera.eye, scene.camera.look_at, scene.camera.up, scene.camera.fovy)
     native.set_ambient(scene.ambient)
     native.set_background(needs.background)
     if needs.lit:
         for light in scene.lights:
-            native.add_light(light.position, light.color, light.attenuation)
+            native.add_light(light.position, light.color, light.attenuation, light.radius)
     pigments = {i: pigment_kind(p).add_to(native, p) for i in needs.pigments for p in (scene.pigments[i],)}
     finishes = {}
     for i in needs.finishes:

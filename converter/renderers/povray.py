@@ -62,7 +62,7 @@ class PovrayRenderer:
         started = time.perf_counter()
         pixels = np.zeros((settings.height, settings.width, 3), dtype=np.float32)
         seconds = {"build": 0.0, "start": 0.0, "render": 0.0}
-        n = math.isqrt(settings.samples)
+        n = math.isqrt(settings.rays_a_pixel())
         with tempfile.TemporaryDirectory() as folder:
             exported, _ = export_povray(*_dimmed(scene, settings), Path(folder, "scene.pov"))
             seconds["build"] = time.perf_counter() - started

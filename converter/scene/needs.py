@@ -23,6 +23,7 @@ class SceneNeeds:
         lit: a surface has kd or ks > 0 and there is a light: shadow rays are needed.
         glossy: a lit surface has ks > 0: highlights are needed.
         effects: what of distributed ray tracing can be seen, each with what has it first, and where.
+        samples: rays per pixel.
         depth: how many bounces to follow after the primary ray, and why.
         background: linear RGB of rays that hit nothing.
         facts: what is known of each object's shape; the columns below are taken from it.
@@ -44,6 +45,7 @@ class SceneNeeds:
     lit: bool
     glossy: bool
     effects: dict[Effect, str]
+    samples: int
     depth: DepthLimit
     background: Color
     facts: tuple[Facts, ...]
@@ -81,6 +83,7 @@ def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
     bounces = depth.bounces > 0
     lit = bool(scene.lights) and any(f.kd > 0 or f.ks > 0 for f in used)
     spreading = [i for i, f in zip(finishes, used, strict=True) if bounces and _is_left(f, largest, settings.cutoff)]
+    effects = scene_effects(scene, lit, spreading)
     return SceneNeeds(
         pigments=tuple(sorted({o.pigment for o in scene.objects})),
         finishes=finishes,
@@ -90,7 +93,8 @@ def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
         branches=branches and bounces,
         lit=lit,
         glossy=bool(scene.lights) and any(f.ks > 0 for f in used),
-        effects=scene_effects(scene, lit, spreading),
+        effects=effects,
+        samples=settings.rays_a_pixel(bool(effects)),
         depth=depth,
         background=scene.ambient if settings.background is None else settings.background,
         facts=facts,

@@ -10,6 +10,8 @@ Specular = Literal["phong", "blinn"]
 IorReading = Literal["auto", "ratio", "index"]
 
 MOST_THREADS = 1024
+SAMPLES = 16
+"""Rays per pixel of a scene that is sampled, where nobody asks for another number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -24,7 +26,7 @@ class Settings:
         background: linear RGB for rays that hit nothing; None means the ambient light's colour.
         cutoff: a ray whose weight (the product of kr and kt so far) is below it is not traced.
         max_depth: bounces after the primary ray; None means as many as the cut-off asks for, within limits.
-        samples: rays per pixel, a square number n * n laid out as a grid.
+        samples: rays per pixel, a square number n * n laid out as a grid; None means as many as `rays_a_pixel` tells.
         seed: start of the random numbers of scenes that are sampled.
         threads: worker threads; 0 means one for each core.
 
@@ -38,6 +40,12 @@ class Settings:
     background: Color | None = None
     cutoff: float = 1 / 512
     max_depth: int | None = None
-    samples: int = 1
+    samples: int | None = None
     seed: int = 0
     threads: int = 0
+
+    def rays_a_pixel(self, sampled: bool = False) -> int:
+        """How many rays a pixel has, in a scene in which something is random, or not."""
+        if self.samples is None:
+            return SAMPLES if sampled else 1
+        return self.samples

@@ -59,7 +59,9 @@ def render_in_a_process(
 def _arguments(settings: Settings) -> list[str]:
     """The settings that a study shares among all methods, as arguments."""
     result = ["--pixel", settings.pixel, "--specular", settings.specular, "--ior", settings.ior]
-    result += ["--samples", str(settings.samples), "--seed", str(settings.seed)]
+    if settings.samples is not None:
+        result += ["--samples", str(settings.samples)]
+    result += ["--seed", str(settings.seed)]
     if settings.background is not None:
         result.append("--background=" + ",".join(map(repr, settings.background)))
     return result

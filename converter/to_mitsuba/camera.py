@@ -6,8 +6,8 @@ from converter.scene.model import Camera
 from converter.scene.settings import Settings
 
 
-def sensor(camera: Camera, settings: Settings) -> dict[str, Any]:
-    """A `pinhole` sensor with a film of single-precision RGB whose pixels are the plain mean of their samples."""
+def sensor(camera: Camera, settings: Settings, samples: int) -> dict[str, Any]:
+    """A `pinhole` sensor with a film of single-precision RGB whose pixels are the plain mean of so many `samples`."""
     return {
         "type": "pinhole",
         "eye": list(camera.eye),
@@ -24,5 +24,5 @@ def sensor(camera: Camera, settings: Settings) -> dict[str, Any]:
             "rfilter": {"type": "box"},
         },
         # The regular grid of n x n cells, for integrators that draw samples from it.
-        "sampler": {"type": "stratified", "sample_count": settings.samples, "jitter": False, "seed": settings.seed},
+        "sampler": {"type": "stratified", "sample_count": samples, "jitter": False, "seed": settings.seed},
     }

@@ -74,7 +74,7 @@ class Meshing:
     @cached_property
     def view(self) -> View:
         """Whence meshes are seen that are as fine as the picture needs."""
-        camera, rows = self.scene.camera, self.settings.height * math.isqrt(self.settings.samples)
+        camera, rows = self.scene.camera, self.settings.height * math.isqrt(self.settings.rays_a_pixel())
         pixel = 2 * math.tan(math.radians(camera.fovy) / 2) / rows
         return View(camera.eye, math.dist(camera.eye, camera.look_at) / NEAR, pixel)
 

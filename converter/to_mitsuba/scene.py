@@ -47,7 +47,7 @@ def scene_description(
     description: dict[str, Any] = {
         "type": "scene",
         "embree_use_robust_intersections": True,
-        "sensor": sensor(scene.camera, settings),
+        "sensor": sensor(scene.camera, settings, needs.samples),
     }
     description |= {f"pigment_{i}": pigment_kind(p).texture(p) for i in needs.pigments for p in (scene.pigments[i],)}
     for o in {(o.finish, o.pigment): o for o in scene.objects}.values():

@@ -82,12 +82,12 @@ def draw_options(settings: Settings) -> list[str]:
 
     With n x n samples the picture is n times as wide and high, and the mean of each n x n pixels is a pixel.
     """
-    n = math.isqrt(settings.samples)
+    n = math.isqrt(settings.rays_a_pixel())
     return [f"+W{n * settings.width}", f"+H{n * settings.height}", "-A", "-D", "+FP16", "File_Gamma=1"]
 
 
 def _heading(scene: Scene, settings: Settings, factor: float, omissions: list[str]) -> str:
-    n = math.isqrt(settings.samples)
+    n = math.isqrt(settings.rays_a_pixel())
     lines = [f"{MARK} from {scene.file.name!a}" if scene.file else MARK]
     lines.append(f"// povray +I... {' '.join(draw_options(settings))}")
     if n > 1:

@@ -219,7 +219,7 @@ def _add_pigment(student: Any, pigment: Pigment) -> int:
 
 
 def _check_known(scene: Scene, settings: Settings) -> None:
-    if settings.samples != 1:
+    if settings.rays_a_pixel() != 1:
         raise UnknownToStudent("mistakes are looked for with one ray a pixel; leave out --samples")
     parts: Iterable[tuple[str, Any]] = [
         ("the camera", scene.camera),

@@ -15,7 +15,7 @@ _NOISE = 2.0**-48
 
 def _pixel(s: Situation) -> float:
     """The angle between neighbouring rays, in radians."""
-    rows = s.settings.height * math.isqrt(s.settings.samples)
+    rows = s.settings.height * math.isqrt(s.needs.samples)
     return 2 * math.tan(math.radians(s.scene.camera.fovy) / 2) / rows
 
 

@@ -50,6 +50,13 @@ double positive(double number, const char* what) {
     return number;
 }
 
+double not_negative(double number, const char* what) {
+    if (!(number >= 0) || !std::isfinite(number)) {
+        throw std::invalid_argument(std::string(what) + " must not be negative");
+    }
+    return number;
+}
+
 template <typename Element, typename List>
 int append(List& list, Element element) {
     list.push_back(std::move(element));
@@ -179,12 +186,14 @@ void bind_scene(nb::module_& module) {
             "color"_a, "The colour of rays that hit nothing.")
         .def(
             "add_light",
-            [](SceneDescription& scene, const Triple& position, const Triple& color, const Triple& attenuation) {
-                return append(scene.lights,
-                              whitted::LightDescription{finite(position, "position"), finite(color, "color"),
-                                                        finite(attenuation, "attenuation")});
+            [](SceneDescription& scene, const Triple& position, const Triple& color, const Triple& attenuation,
+               double radius) {
+                return append(scene.lights, whitted::LightDescription{
+                                                finite(position, "position"), finite(color, "color"),
+                                                finite(attenuation, "attenuation"), not_negative(radius, "radius")});
             },
-            "position"_a, "color"_a, "attenuation"_a, "Add a point light, and return its index.")
+            "position"_a, "color"_a, "attenuation"_a, "radius"_a = 0.0,
+            "Add a light, a point or a disc that faces the point being lit, and return its index.")
         .def(
             "add_solid",
             [](SceneDescription& scene, const Triple& color) {

@@ -505,8 +505,8 @@ extern template class Csg<double>;
 template <typename Real>
 class CsgSight : public BallInSight<Real> {
  public:
-    CsgSight(const Csg<Real>& csg, const Vector<Real>& point)
-        : BallInSight<Real>(csg.ball_center_, csg.reach2_, point) {}
+    CsgSight(const Csg<Real>& csg, const Vector<Real>& point, Real extent)
+        : BallInSight<Real>(csg.ball_center_, csg.reach2_, point, extent) {}
 };
 
 }  // namespace whitted::WHITTED_ISA

@@ -336,8 +336,8 @@ extern template class Quadric<double>;
 template <typename Real>
 class QuadricSight : public BallInSight<Real> {
  public:
-    QuadricSight(const Quadric<Real>& quadric, const Vector<Real>& point)
-        : BallInSight<Real>(quadric.center_, quadric.reach2_, point) {}
+    QuadricSight(const Quadric<Real>& quadric, const Vector<Real>& point, Real extent)
+        : BallInSight<Real>(quadric.center_, quadric.reach2_, point, extent) {}
 };
 
 }  // namespace whitted::WHITTED_ISA

@@ -86,11 +86,12 @@ class ShapeLists {
         });
     }
 
-    // The shapes in the ranges, which begin with the lists, as seen from a point.
-    View view_from(const Ranges& ranges, const Vector<Real>& point) const {
+    // The shapes in the ranges, which begin with the lists, as seen from a point, or from all points about it that are
+    // no farther away than `extent`.
+    View view_from(const Ranges& ranges, const Vector<Real>& point, Real extent = 0) const {
         View view;
         for_each_numbered(ranges, [&](auto kind, int, const auto& shape) {
-            std::get<kind()>(view).emplace_back(shape, point);
+            std::get<kind()>(view).emplace_back(shape, point, extent);
             return true;
         });
         return view;

@@ -19,8 +19,9 @@
 //     for_each_contact          the primitives that a point lies on
 //     pass                      if it may be a leaf of csg, the passage of rays, of which it is known where they start;
 //                               returns the least distance between primitives that tie if it is small
-//     Sight                     the shape as seen from one point, which tells rays through the point that miss it:
-//                               may_be_hit by rays from the point; may_block rays that lead to it
+//     Sight                     the shape as seen from one point, or from all within a distance of it, which tells rays
+//                               through these that miss it: may_be_hit by rays from there; may_block rays that lead
+//                               there
 //
 // Outside the kernels a description has its bounds, in search.cpp, and says what lies on it, in incidence.h.
 

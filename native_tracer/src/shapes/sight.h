@@ -3,6 +3,7 @@
 
 #pragma once
 
+#include <cmath>
 #include <limits>
 
 #include "tracing/ray.h"
@@ -34,8 +35,10 @@ class BallInSight {
     using L = Lanes<Real>;
 
     // reach2 is the square of the radius, and more by all that is rounded; it may be infinite.
-    BallInSight(const Vector<Real>& center, Real reach2, const Vector<Real>& point)
-        : g_(center - point), outside2_((1 - slack) * dot(g_, g_) - (1 + slack) * reach2) {}
+    // A line that meets the ball and passes the point no farther away than `extent` is parallel to one through the
+    // point that meets a ball larger by so much.
+    BallInSight(const Vector<Real>& center, Real reach2, const Vector<Real>& point, Real extent)
+        : g_(center - point), outside2_((1 - slack) * dot(g_, g_) - (1 + slack) * larger(reach2, extent)) {}
 
     bool may_be_hit(const Vector<L>& direction) const { return any(may_meet(direction, L(Real(0)))); }
 
@@ -48,6 +51,12 @@ class BallInSight {
     static constexpr Real slack = 128 * std::numeric_limits<Real>::epsilon();
 
     const Vector<Real>& to_center() const { return g_; }
+
+    // The square of a length that is longer by `extent`.
+    static Real larger(Real length2, Real extent) {
+        const Real length = std::sqrt(length2) + extent;
+        return extent == 0 ? length2 : length * length;
+    }
 
  private:
     Mask<Real> may_meet(const Vector<L>& direction, L error2) const {

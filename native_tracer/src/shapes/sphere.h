@@ -171,11 +171,11 @@ class SphereSight : public BallInSight<Real> {
     using L = Lanes<Real>;
     using Ball = BallInSight<Real>;
 
-    SphereSight(const Sphere<Real>& sphere, const Vector<Real>& point)
-        : Ball(sphere.center_, sphere.reach2_, point),
+    SphereSight(const Sphere<Real>& sphere, const Vector<Real>& point, Real extent)
+        : Ball(sphere.center_, sphere.reach2_, point, extent),
           center_(sphere.center_),
           inside2_((1 - Ball::slack) * sphere.reach2_),
-          encloses_((1 + Ball::slack) * dot(Ball::to_center(), Ball::to_center()) < inside2_) {}
+          encloses_((1 + Ball::slack) * Ball::larger(dot(Ball::to_center(), Ball::to_center()), extent) < inside2_) {}
 
     bool may_block(const Rays<Real>& rays, L distance, Mask<Real> wanted) const {
         if (encloses_) {

@@ -26,6 +26,7 @@ struct LightDescription {
     Triple position;
     Triple color;
     Triple attenuation;  // a, b, c of 1 / (a + b d + c d^2)
+    double radius = 0;   // of a disc that faces the point being lit
 };
 
 struct SolidDescription {
@@ -104,6 +105,7 @@ enum class Search { automatic, brute, bvh };
 struct RenderSettings {
     int width, height;
     int grid = 1;  // grid x grid rays a pixel
+    std::uint32_t seed = 0;
     bool corner = true;
     bool blinn = false;
     double cutoff = 0;

@@ -2,11 +2,15 @@
 
 #pragma once
 
+#include <cstdint>
+#include <vector>
+
 #include "shapes/contact.h"
 #include "tracing/camera.h"
 #include "tracing/description.h"
 #include "tracing/kernel.h"
 #include "tracing/ray.h"
+#include "tracing/sampler.h"
 #include "tracing/vector.h"
 
 namespace whitted::WHITTED_ISA {
@@ -30,6 +34,16 @@ class PrimaryRays {
     bool done() const { return row_ == tile_.bottom; }
     bool begins_row() const { return column_ == tile_.left && sample_ == 0; }
 
+    // The key of each pixel's samples, see sampler.h, in the order of their numbers.
+    void fill_pixel_keys(std::uint32_t seed, std::vector<PixelKey>& keys) const {
+        keys.clear();
+        for (int row = tile_.top; row < tile_.bottom; ++row) {
+            for (int column = tile_.left; column < tile_.right; ++column) {
+                keys.push_back({pixel_key(seed, static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row))});
+            }
+        }
+    }
+
     // The next rays of the row, as many as there are lanes and pixels left.
     Group<Real> next() {
         using L = Lanes<Real>;
@@ -50,6 +64,8 @@ class PrimaryRays {
         group.pixel = Indices<Real>((row_ - tile_.top) * (tile_.right - tile_.left) + column_ - tile_.left) +
                       Indices<Real>::numbers();
         group.record = -1;
+        group.sample = sample_;
+        group.path = static_cast<int>(primary_path);
         group.active = Mask<Real>::first(tile_.right - column_);
         advance();
         return group;

@@ -39,12 +39,14 @@ struct Group {
     Indices<Real> depth;  // bounces before it
     Indices<Real> pixel;
     Indices<Real> record;  // what the observer knows it by
+    // In scenes that are sampled: which sample of the pixel the ray belongs to, and its path, see sampler.h.
+    Indices<Real> sample, path;
     Mask<Real> active;
 };
 
-// Calls visit(field) for all that is known of a group's rays.
+// Calls visit(field) for all that is known of a group's rays; those of samples only where they are wanted.
 template <typename Group, typename Visit>
-[[gnu::always_inline]] constexpr void for_each_field(Group& group, Visit visit) {
+[[gnu::always_inline]] constexpr void for_each_field(Group& group, bool sampled, Visit visit) {
     for (auto* vector : {&group.rays.origin, &group.rays.direction}) {
         visit(vector->x);
         visit(vector->y);
@@ -59,6 +61,10 @@ template <typename Group, typename Visit>
     visit(group.depth);
     visit(group.pixel);
     visit(group.record);
+    if (sampled) {
+        visit(group.sample);
+        visit(group.path);
+    }
 }
 
 // Rays that wait for their turn: a stack that keeps each field in a row of its own, so that groups enter and leave it
@@ -66,6 +72,8 @@ template <typename Group, typename Visit>
 template <typename Real>
 class RayStack {
  public:
+    explicit RayStack(bool sampled) : sampled_(sampled) {}
+
     std::size_t size() const { return size_; }
     void clear() { size_ = 0; }
 
@@ -73,7 +81,7 @@ class RayStack {
     [[gnu::always_inline]] void push(const Group<Real>& group, Mask<Real> named) {
         reserve(lane_count<Real>);
         Cell* end = cells_.data() + size_;
-        for_each_field(group, [&](const auto& field) {
+        for_each_field(group, sampled_, [&](const auto& field) {
             pack(named, field, end);
             end += capacity_;
         });
@@ -84,7 +92,7 @@ class RayStack {
     [[gnu::always_inline]] Group<Real> group(std::size_t first) const {
         Group<Real> group;
         const Cell* from = cells_.data() + first;
-        for_each_field(group, [&](auto& field) {
+        for_each_field(group, sampled_, [&](auto& field) {
             load(from, field);
             from += capacity_;
         });
@@ -109,11 +117,11 @@ class RayStack {
     struct Cell {
         Real value;  // or an integer
     };
-    // As many as for_each_field() visits.
+    // As many as for_each_field() visits at most.
     static constexpr std::size_t fields = [] {
         Group<Real> group;
         std::size_t number = 0;
-        for_each_field(group, [&](const auto&) { ++number; });
+        for_each_field(group, true, [&](const auto&) { ++number; });
         return number;
     }();
 
@@ -131,6 +139,7 @@ class RayStack {
         capacity_ = 2 * needed;
     }
 
+    const bool sampled_;
     std::vector<Cell> cells_;  // fields x capacity
     std::size_t capacity_ = 0;
     std::size_t size_ = 0;

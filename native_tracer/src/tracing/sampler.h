@@ -13,7 +13,10 @@
 #pragma once
 
 #include <algorithm>
+#include <array>
+#include <cstddef>
 #include <cstdint>
+#include <cstring>
 #include <limits>
 #include <numbers>
 
@@ -118,7 +121,31 @@ template <typename Word>
             reverse_bits(scramble_reversed(sobol_reversed(index), scrambling_y))};
 }
 
-// ---- From the square to discs and cones ---------------------------------------------------------------------------
+// ---- In lanes -----------------------------------------------------------------------------------------------------
+
+// Words for all lanes: more than there are lanes, where they fill a register.
+template <typename Real>
+struct WordRows {
+    typedef std::uint32_t Words __attribute__((vector_size(sizeof(typename Register<Real>::Reals))));
+    static constexpr int words = sizeof(Words) / sizeof(std::uint32_t);
+    static constexpr int size = std::max(words, lane_count<Real>);
+    using Row = std::array<std::uint32_t, size>;
+};
+
+struct PixelKey {
+    std::uint32_t value;
+};
+
+// Which sample of which pixel each lane is, and which ray of its tree.
+template <typename Real>
+struct SampleNames {
+    typename WordRows<Real>::Row pixel_key, number, path;
+};
+
+template <typename Real>
+struct PlanePoint {
+    Lanes<Real> x, y;
+};
 
 // The middle of the 2^32 parts of 0..1 that the word names, or of as many as have a middle in this precision: never 0,
 // 1/2 or 1.
@@ -129,10 +156,28 @@ Real unit_interval(std::uint32_t word) {
     return (static_cast<Real>(word >> (32 - bits)) + Real(0.5)) * part;
 }
 
+// The samples' points of the unit square for one use.
 template <typename Real>
-struct PlanePoint {
-    Lanes<Real> x, y;
-};
+[[gnu::noinline]] PlanePoint<Real> square_point(const SampleNames<Real>& names, std::uint32_t use) {
+    using Rows = WordRows<Real>;
+    using Words = typename Rows::Words;
+    typename Rows::Row x, y;
+    for (int first = 0; first < Rows::size; first += Rows::words) {
+        Words pixel_key, number, path;
+        std::memcpy(&pixel_key, names.pixel_key.data() + first, sizeof(Words));
+        std::memcpy(&number, names.number.data() + first, sizeof(Words));
+        std::memcpy(&path, names.path.data() + first, sizeof(Words));
+        const SamplePoint<Words> point = sample_point(pixel_key, number, path, Words{} + use);
+        std::memcpy(x.data() + first, &point.x, sizeof(Words));
+        std::memcpy(y.data() + first, &point.y, sizeof(Words));
+    }
+    const auto lanes_of = [](const auto& row) {
+        return Lanes<Real>::gather([&](int lane) { return unit_interval<Real>(row[static_cast<std::size_t>(lane)]); });
+    };
+    return {lanes_of(x), lanes_of(y)};
+}
+
+// ---- From the square to discs and cones ---------------------------------------------------------------------------
 
 // Cosine and sine of angles between -pi/4 and pi/4, by Taylor's series: every renderer rounds it alike.
 template <typename Real>

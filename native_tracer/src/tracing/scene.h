@@ -26,8 +26,12 @@ struct Light {
     Vector<Real> position;
     Color<Real> color;
     Real a, b, c;  // dimmed by 1 / (a + b d + c d^2) at distance d
+    Real radius;   // of a disc that faces the point being lit
+    Real error;    // how far the position's sums with others may be off
     View<Real> view;
-    std::vector<Contact<Real>> contacts;
+    std::vector<Contact<Real>> contacts;  // of a light that is a point
+
+    bool is_point() const { return radius == 0; }
 
     // Whether rays that lead to the light cross an object at the surface that the light lies on.
     Mask<Real> lies_at(const Crossing<Real>& crossing, const Vector<L>& direction) const {
@@ -102,6 +106,7 @@ void merge(Mask<Real> mask, const Surface<Real>& other, Surface<Real>& surface) 
 template <typename Real>
 struct Scene {
     Color<Real> ambient, background;
+    bool sampled = false;  // something is random
     View<Real> eye_view;
     EyeContact<Real> eye_contact;
     std::vector<Light<Real>> lights;
@@ -364,8 +369,13 @@ template <typename Real>
 void Scene<Real>::add_light(const SceneDescription& description, const LightDescription& light) {
     const Vector<Real> position = vector_of<Real>(light.position);
     const Color<Real> fading = vector_of<Real>(light.attenuation);
-    lights.push_back({position, vector_of<Real>(light.color), fading.x, fading.y, fading.z,
-                      shapes.view_from(apart, position), contacts_of(description, light.position)});
+    const bool point = light.radius == 0;
+    lights.push_back(
+        {position, vector_of<Real>(light.color), fading.x, fading.y, fading.z, static_cast<Real>(light.radius),
+         8 * tie_epsilon<Real> * std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}),
+         shapes.view_from(apart, position, static_cast<Real>(light.radius)),
+         point ? contacts_of(description, light.position) : std::vector<Contact<Real>>{}});
+    sampled |= !point;
 }
 
 template <typename Real>

@@ -25,6 +25,7 @@
 #include "tracing/description.h"
 #include "tracing/observer.h"
 #include "tracing/ray.h"
+#include "tracing/sampler.h"
 #include "tracing/scene.h"
 #include "tracing/vector.h"
 
@@ -42,7 +43,11 @@ class Tracer {
           observer_(observer),
           cutoff_(static_cast<Real>(settings.cutoff)),
           max_depth_(settings.max_depth),
-          blinn_(settings.blinn) {}
+          blinn_(settings.blinn),
+          seed_(settings.seed),
+          reflected_(scene.sampled),
+          transmitted_(scene.sampled),
+          batch_(scene.sampled) {}
 
     // Traces `primary_rays` with all that follow from them, and adds their colours to sums[pixel]. Returns false if it
     // was stopped before the end.
@@ -67,6 +72,8 @@ class Tracer {
 
     void trace_group(const Group<Real>& group, const View<Real>* view = nullptr);
     Surface<Real> surface_at(const Rays<Real>& rays, const Hits<Real>& hits) const;
+    PlanePoint<Real> sample(const Group<Real>& group, std::uint32_t use) const;
+    Vector<L> to_disc(const Group<Real>& group, std::size_t light, const Vector<L>& center, L& error) const;
     Color<L> local_color(const Group<Real>& group, const Hits<Real>& hits, const Surface<Real>& surface);
     L highlight(const Rays<Real>& rays, const Hits<Real>& hits, const Surface<Real>& surface, const Vector<L>& to_light,
                 L cosine, Mask<Real> wanted) const;
@@ -81,13 +88,15 @@ class Tracer {
     const Real cutoff_;
     const int max_depth_;
     const bool blinn_;
+    const std::uint32_t seed_;
 
     // Successors of the rays that are traced, and those that are traced. Kinds wait apart: in which order rays are
     // traced must not depend on the number of lanes.
     RayStack<Real> reflected_, transmitted_, batch_;
     Color<Sum>* sums_ = nullptr;
     RayCounts* counts_ = nullptr;
-    std::vector<PixelState> pixels_;  // up to the last one of which the depth limit dropped a ray
+    std::vector<PixelKey> pixel_keys_;  // in scenes that are sampled
+    std::vector<PixelState> pixels_;    // up to the last one of which the depth limit dropped a ray
 };
 
 template <typename Real, typename Observer>
@@ -99,6 +108,9 @@ bool Tracer<Real, Observer>::trace(PrimaryRays primary_rays, Color<Sum>* sums, R
     reflected_.clear();
     transmitted_.clear();
     pixels_.clear();
+    if (scene_.sampled) {
+        primary_rays.fill_pixel_keys(seed_, pixel_keys_);
+    }
     while (!stop.load(std::memory_order_relaxed)) {
         if (reflected_.size() + transmitted_.size() < batch_size && !primary_rays.done()) {
             // Whole rows of pixels, for where a row is cut depends on the number of lanes.
@@ -208,7 +220,11 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
     const L point_error = L(8 * tie_epsilon<Real>) * reach;
     for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
         const Light<Real>& light = scene_.lights[i];
-        const Vector<L> path = Vector<L>(light.position) - surface.point;
+        Vector<L> path = Vector<L>(light.position) - surface.point;
+        L error = surface.error;
+        if (!light.is_point()) [[unlikely]] {
+            path = to_disc(group, i, path, error);
+        }
         const L distance = length(path);
         const L nearness = one / distance;
         const Vector<L> to_light = path * nearness;
@@ -222,7 +238,7 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
             counts_->shadow += static_cast<std::uint64_t>(count(faces));
             shadow_rays.direction = to_light;
             // It leads to the light from wherever the point really is.
-            shadow_rays.spread = min(L(least_spread<Real>) + surface.error * nearness, L(most_blur<Real>));
+            shadow_rays.spread = min(L(least_spread<Real>) + error * nearness, L(most_blur<Real>));
             blocker = scene_.blocker(shadow_rays, light, distance, faces);
         }
         const Mask<Real> lit = faces & (blocker < 0);
@@ -242,6 +258,34 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
         observer_.light(group, i, surface, lit, blocker, cosine, attenuation, diffuse, specular);
     }
     return color;
+}
+
+// The rays' points of the unit square for one use.
+template <typename Real, typename Observer>
+PlanePoint<Real> Tracer<Real, Observer>::sample(const Group<Real>& group, std::uint32_t use) const {
+    SampleNames<Real> names{};
+    for (unsigned lanes = group.active.bits(); lanes != 0; lanes &= lanes - 1) {
+        const int lane = std::countr_zero(lanes);
+        const auto at = static_cast<std::size_t>(lane);
+        names.pixel_key[at] = pixel_keys_[static_cast<std::size_t>(group.pixel[lane])].value;
+        names.number[at] = static_cast<std::uint32_t>(group.sample[lane]);
+        names.path[at] = static_cast<std::uint32_t>(group.path[lane]);
+    }
+    return square_point(names, use);
+}
+
+// From a point to a point of a light, given the way to its centre: the disc lies across that way, and turns with it
+// where the point is off. `error` is how far that may be, and becomes how far both ends may be off.
+template <typename Real, typename Observer>
+[[gnu::noinline]] auto Tracer<Real, Observer>::to_disc(const Group<Real>& group, std::size_t light,
+                                                       const Vector<L>& center, L& error) const -> Vector<L> {
+    const PlanePoint<Real> square = sample(group, use::first_light + static_cast<std::uint32_t>(light));
+    const PlanePoint<Real> point = disc_point(square.x, square.y);
+    const L nearness = L(1) / length(center);
+    const Frame<Real> frame(center * nearness);
+    const L radius = scene_.lights[light].radius;
+    error = error + radius * (error * nearness + L(8 * tie_epsilon<Real>)) + L(scene_.lights[light].error);
+    return center + (radius * point.x) * frame.tangent + (radius * point.y) * frame.bitangent;
 }
 
 // Phong's max(0, r.v)^alpha or Blinn's max(0, n.h)^alpha, for the rays in `wanted`.
@@ -280,6 +324,7 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
     successors.depth = group.depth + Indices<Real>(1);
     successors.pixel = group.pixel;
     successors.record = group.record;
+    successors.sample = group.sample;
     const auto push = [&](RayKind kind, const Turn& turn, L weight, Mask<Real> followed, RayStack<Real>& stack,
                           std::uint64_t& counter) {
         successors.rays.direction = turn.direction;
@@ -287,6 +332,12 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
         successors.rays.inside = turn.inside;
         successors.weight = weight;
         successors.active = followed;
+        if (scene_.sampled) {
+            successors.path = Indices<Real>::gather([&](int lane) {
+                const auto path = static_cast<std::uint32_t>(group.path[lane]);
+                return static_cast<int>(kind == RayKind::reflected ? mirrored_path(path) : transmitted_path(path));
+            });
+        }
         observer_.spawned(kind, group, successors);
         stack.push(successors, followed);
         counter += static_cast<std::uint64_t>(count(followed));
