@@ -10,6 +10,7 @@ Vegdahl, Building a Better LK Hash, 2021, for the permutation, which pbrt-v4 and
 Hash Prospector, 2018, with the constants of its issue 19, for the keys.
 """
 
+from dataclasses import dataclass
 from math import pi
 from typing import Any
 
@@ -79,6 +80,19 @@ def _sobol_reversed(index: Any) -> Any:
     for shift, kept in ((1, 0x55555555), (2, 0x33333333), (4, 0x0F0F0F0F), (8, 0x00FF00FF), (16, 0x0000FFFF)):
         index = index ^ ((index >> shift) & kept)
     return index
+
+
+@dataclass
+class Sample:
+    """One sample of each pixel (UInt32): the pixel's key, and the sample's number."""
+
+    pixel: Any
+    number: Any
+
+    def square(self, number: type, path: Any, use: Any) -> tuple[Any, Any]:
+        """Its point of the unit square, as the type `number`, for one use and one ray of its tree."""
+        x, y = sample_point(self.pixel, self.number, path, use)
+        return unit_interval(number, x), unit_interval(number, y)
 
 
 # ------------------------------------------------------------------------------------ from the square to discs, cones

@@ -6,8 +6,11 @@ from math import acos, asin, asinh, isqrt, pi, radians, sqrt, tan
 import numpy as np
 import pytest
 import sampler_specification as specification
+from variant import VARIANT
 
 from converter.analysis.notices import scene_notices
+from converter.compare.metrics import LIMIT
+from converter.renderers.methods import METHODS
 from converter.renderers.native import NativeRenderer
 from converter.scene.model import Camera, Finish, Light, Object, Polyhedron, Scene, Solid, Sphere
 from converter.scene.settings import Settings
@@ -59,8 +62,9 @@ def test_a_straight_edge_across_a_penumbra(edge):
     height = 5.5 if edge > 0 else 5
     visible = shadow_of_half_space(edge)
     pixels = drawn(scene(half_space(edge * 0.25 * height / 10)))
-    # The cosine at the disc's rim is 3e-4 less than 1.
-    same_mean(pixels / (1 - 0.25**2 / 400), visible, sqrt(visible * (1 - visible) / 64) / 2 + 1e-4)
+    # Half the deviation of independent points, but where only a sliver is covered. The cosine at the rim is 3e-4 low.
+    gain = 2 if abs(edge) <= 0.75 else 1
+    same_mean(pixels / (1 - 0.25**2 / 400), visible, sqrt(visible * (1 - visible) / 64) / gain + 1e-4)
 
 
 @pytest.mark.parametrize("radius", [0.05, 0.1, 0.15])
@@ -240,12 +244,34 @@ def test_a_picture_in_long_double_is_the_same():
     assert np.abs(exact - drawn(lamps(), settings)).max() < 1e-5
 
 
-def test_a_pixels_rays_have_its_colour():
+def glass():
+    """Rays that split in two, under the lamps."""
+    pane = Object(0, 2, Polyhedron(((0, 0, 1, 1), (0, 0, -1, -1.5), (1, 0, 0, -3), (-1, 0, 0, -3), (0, 1, 0, -4))))
+    made = lamps()
+    return replace(
+        made, objects=(*made.objects, pane), finishes=(*made.finishes, Finish(0.1, 0.2, 0.2, 30, 0.3, 0.6, 1.4))
+    )
+
+
+@pytest.mark.parametrize("samples", [1, 16])
+@pytest.mark.parametrize("made", [lamps, glass])
+@pytest.mark.parametrize("method", ["mitsuba-analytic", "mitsuba-bvh", "mitsuba-mesh"])
+def test_both_renderers_draw_the_same_noise(method, made, samples):
+    settings = replace(FEW, width=64, height=48, samples=samples)
+    native, mitsuba = (METHODS[name].renderer(VARIANT) for name in ("native", method))
+    difference = np.abs(drawn(made(), settings, native) - drawn(made(), settings, mitsuba)).max(axis=2)
+    assert (difference > LIMIT).sum() == 0
+    assert np.median(difference) < 1e-6
+
+
+@pytest.mark.parametrize("method", ["native", "mitsuba-analytic"])
+def test_a_pixels_rays_have_its_colour(method):
     settings = replace(FEW, samples=4)
-    pixels = drawn(lamps(), settings)
-    for x, y in ((3, 8), (10, 9), (13, 7)):
-        record = NativeRenderer().trace_pixel(lamps(), settings, x, y)
-        assert record.color == pytest.approx(pixels[y, x], abs=0)
+    renderer = METHODS[method].renderer(VARIANT)
+    pixels = drawn(glass(), settings, renderer)
+    places = [(3, 8), (10, 9), (13, 7)]
+    for record, (x, y) in zip(renderer.trace_pixels(glass(), settings, places), places, strict=True):
+        assert record.color == pytest.approx(pixels[y, x], abs=1e-6)
 
 
 def test_a_radius_of_0_is_a_point_to_the_last_bit():

@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from converter.renderers.records import MOST_RAYS, HitRecord, LightRecord, PixelRecord, RayKind, RayRecord
 from mitsuba_plugins.intersection.columns import column
 from mitsuba_plugins.intersection.rays import NOTHING, UPRIGHT, Ray, lanes
+from mitsuba_plugins.sampler import PRIMARY_PATH, Sample
 
 
 def trace_pixels(scene: Any, pixels: Sequence[tuple[int, int]]) -> list[PixelRecord]:
@@ -27,9 +28,14 @@ def trace_pixels(scene: Any, pixels: Sequence[tuple[int, int]]) -> list[PixelRec
     integrator, sensor = scene.integrator(), scene.sensors()[0]
     offsets = integrator.sample_offsets(sensor.sampler().sample_count())
     x, y = (np.array([pixel[k] + offset[k] for pixel in pixels for offset in offsets], float) for k in (0, 1))
+    columns, rows = (np.repeat([pixel[k] for pixel in pixels], len(offsets)) for k in (0, 1))
     with integrator.prepared(scene, sensor):
+        key = integrator.pixel_key(mi.Point2d(column(mi.Float64, columns), column(mi.Float64, rows)))
+        number = column(mi.UInt32, np.tile(np.arange(len(offsets)), len(pixels)))
         rays = _Rays.of(
-            integrator.primary_ray(sensor, mi.Point2d(column(mi.Float64, x), column(mi.Float64, y))), len(x)
+            integrator.primary_ray(sensor, mi.Point2d(column(mi.Float64, x), column(mi.Float64, y))),
+            (key, number, mi.UInt32(PRIMARY_PATH)),
+            len(x),
         )
         roots = _Tracer(integrator).trees(rays)
     result = []
@@ -42,13 +48,15 @@ def trace_pixels(scene: Any, pixels: Sequence[tuple[int, int]]) -> list[PixelRec
 
 @dataclass(frozen=True)
 class _Rays:
-    """The numbers of rays, with their last axis the rays': those of a `Ray`, as it has them."""
+    """The numbers of rays, with their last axis the rays': those of a `Ray`, as it has them, and what tells its random
+    numbers.
+    """
 
-    columns: tuple[NDArray[Any], ...]  # o, d, object, primitive, inside, t_min, spread
+    columns: tuple[NDArray[Any], ...]  # o, d, object, primitive, inside, t_min, spread; pixel key, number, path
 
     @classmethod
-    def of(cls, ray: Ray, count: int) -> "_Rays":
-        columns = (ray.o, ray.d, ray.object, ray.primitive, ray.inside, ray.t_min, ray.spread)
+    def of(cls, ray: Ray, names: tuple[Any, Any, Any], count: int) -> "_Rays":
+        columns = (ray.o, ray.d, ray.object, ray.primitive, ray.inside, ray.t_min, ray.spread, *names)
         return cls(tuple(np.broadcast_to(a, (*a.shape[:-1], count)) for a in map(np.array, columns)))
 
     def chosen(self, which: Sequence[int]) -> "_Rays":
@@ -60,7 +68,7 @@ class _Rays:
     def ray(self, types: Any) -> Ray:
         import mitsuba as mi
 
-        o, d, index, primitive, inside, t_min, spread = map(np.ascontiguousarray, self.columns)
+        o, d, index, primitive, inside, t_min, spread = map(np.ascontiguousarray, self.columns[:7])
         return Ray(
             types.Point3(o),
             types.Vector3(d),
@@ -70,6 +78,13 @@ class _Rays:
             column(types.Float, t_min),
             column(types.Float, spread),
         )
+
+    def names(self) -> tuple[Any, Any, Any]:
+        """The pixel's key, the number of the sample, and the path of each."""
+        import mitsuba as mi
+
+        key, number, path = (column(mi.UInt32, np.ascontiguousarray(numbers)) for numbers in self.columns[7:])
+        return key, number, path
 
     def places(self) -> tuple[list[tuple[float, ...]], list[tuple[float, ...]]]:
         """The origin and the direction of each."""
@@ -117,8 +132,10 @@ class _Tracer:
 
         integrator, count = self._integrator, len(rays)
         ray = rays.ray(integrator.types)
+        key, number, path = rays.names()
+        sample = Sample(key, number)
         # Numbers and no expressions of them: every bounce then runs the same few kernels.
-        dr.make_opaque(ray)
+        dr.make_opaque(ray, sample, path)
         hit = integrator.closest(ray, lanes(count))
         dr.make_opaque(hit)
         finish, pigment = integrator.material(ray, hit)
@@ -130,23 +147,23 @@ class _Tracer:
         mirror_throughput, mirrors, through_throughput, refracts = integrator.followed(
             throughput, dr.opaque(mi.UInt32, depth, count), hit, finish
         )
-        local = integrator.local_radiance(ray, hit, finish, pigment)
+        local = integrator.local_radiance(ray, hit, finish, pigment, sample, path)
         dr.eval(through, mirrored, total, local, mirror_throughput, mirrors, through_throughput, refracts)
 
         local_colors, background = _rows(local, count), _rows(integrator.background, 1)[0]
-        hits = self._hits(ray, hit, finish, pigment, total, count)
+        hits = self._hits(ray, hit, finish, pigment, total, (sample, path), count)
         for record, found, color in zip(level, hits, local_colors, strict=True):
             record.hit = found
             record.local = background if found is None else color
-        kinds: tuple[tuple[RayKind, Any, Any, Any, Ray], ...] = (
-            ("reflected", finish.kr, mirrors, mirror_throughput, mirrored),
-            ("transmitted", finish.kt, refracts, through_throughput, through),
+        kinds: tuple[tuple[RayKind, Any, Any, Any, Ray, Any], ...] = (
+            ("reflected", finish.kr, mirrors, mirror_throughput, mirrored, 2 * path),
+            ("transmitted", finish.kt, refracts, through_throughput, through, 2 * path + 1),
         )
         coefficients: list[dict[RayKind, float]] = [{} for _ in level]
         following: list[RayRecord] = []
         chosen = []
-        for kind, coefficient, follows, throughputs, spawned in kinds:
-            secondary = _Rays.of(spawned, count)
+        for kind, coefficient, follows, throughputs, spawned, its_path in kinds:
+            secondary = _Rays.of(spawned, (key, number, its_path), count)
             which = []
             columns = (_list(numbers, count) for numbers in (coefficient, follows, throughputs))
             for i, (factor, goes_on, its_throughput) in enumerate(zip(*columns, strict=True)):
@@ -165,10 +182,10 @@ class _Tracer:
         return following, chosen[0].with_more(chosen[1]), coefficients
 
     def _hits(
-        self, ray: Ray, hit: Any, finish: Any, pigment: Any, total: Any, count: int
+        self, ray: Ray, hit: Any, finish: Any, pigment: Any, total: Any, sampled: tuple[Any, Any], count: int
     ) -> Iterator[HitRecord | None]:
         """What each ray hits; None where that is nothing."""
-        lights = self._lights(ray, hit, finish, pigment, count)
+        lights = self._lights(ray, hit, finish, pigment, sampled, count)
         answers = _list(finish.kd + finish.ks > 0, count)
         transmits = _list(finish.kt > 0, count)
         columns = (
@@ -193,14 +210,17 @@ class _Tracer:
         ]
         return piece
 
-    def _lights(self, ray: Any, hit: Any, finish: Any, pigment: Any, count: int) -> list[list[LightRecord]]:
+    def _lights(
+        self, ray: Any, hit: Any, finish: Any, pigment: Any, sampled: tuple[Any, Any], count: int
+    ) -> list[list[LightRecord]]:
         """For each ray what each light adds."""
         import drjit as dr
         import mitsuba as mi
 
         result: list[list[LightRecord]] = [[] for _ in range(count)]
         for k in range(self._integrator.light_count if self._integrator.shadows else 0):
-            light = self._integrator.light(dr.opaque(mi.UInt32, k, count), ray, hit, finish, pigment, lanes(count))
+            index = dr.opaque(mi.UInt32, k, count)
+            light = self._integrator.light(index, ray, hit, finish, pigment, lanes(count), *sampled)
             dr.eval(light)
             cosine, attenuation = _list(light.cosine, count), _list(light.attenuation, count)
             blocker = _list(light.blocker, count)

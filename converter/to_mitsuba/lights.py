@@ -1,4 +1,4 @@
-"""Point lights. The ambient light is the integrator's: see `integrator`."""
+"""Lights. The ambient light is the integrator's: see `integrator`."""
 
 from typing import Any
 
@@ -12,6 +12,7 @@ def light(source: Light) -> dict[str, Any]:
         "position": list(source.position),
         "color": color(source.color),
         "attenuation": list(source.attenuation),
+        **({"radius": source.radius} if source.radius else {}),
     }
 
 

@@ -5,6 +5,7 @@ from typing import Any
 from converter.analysis.coplanar import with_planes_shared
 from converter.pigments.table import pigment_kind
 from converter.renderers.base import refuse_effects
+from converter.scene.effects import Effect
 from converter.scene.geometry import simplified
 from converter.scene.model import Scene
 from converter.scene.needs import scene_needs
@@ -14,6 +15,9 @@ from converter.to_mitsuba.finishes import bsdf
 from converter.to_mitsuba.integrator import Intersections, RayPrecision, integrator
 from converter.to_mitsuba.lights import light
 from converter.to_mitsuba.surfaces import exact_surfaces, material_name, shapes
+
+EFFECTS: tuple[Effect, ...] = ("soft shadows",)
+"""What of distributed ray tracing the integrator draws."""
 
 
 def scene_description(
@@ -37,7 +41,7 @@ def scene_description(
     """
     scene = with_planes_shared(simplified(scene))
     needs = scene_needs(scene, settings)
-    refuse_effects(needs, "Mitsuba with our plugins")
+    refuse_effects(needs, "Mitsuba with our plugins", EFFECTS)
     geometry = exact_surfaces(scene, needs)
     found: dict[str, Any] = {}
     if with_shapes:

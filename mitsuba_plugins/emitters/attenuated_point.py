@@ -1,8 +1,9 @@
-"""A point light with a polynomial attenuation: the course's light."""
+"""A point light with a polynomial attenuation, or a disc of such points: the course's light."""
 
 import drjit as dr
 import mitsuba as mi
 
+from mitsuba_plugins import sampler
 from mitsuba_plugins.arithmetic import quotient
 
 
@@ -23,6 +24,10 @@ class AttenuatedPoint(mi.Emitter):
        - |vector|
        - Coefficients :math:`(a, b, c)` of :math:`1/(a + b\,d + c\,d^2)` at distance :math:`d` (Default: 1, 0, 0)
 
+     * - radius
+       - |float|
+       - Of a disc about the position that faces whatever is lit, each of whose points is such a light (Default: 0)
+
     Its irradiance at distance :math:`d` is :math:`\pi` times the colour over the attenuation, so that together with the
     :math:`1/\pi` of a physical BSDF the course's sums come out; Mitsuba's ``point`` is the case (0, 0, 1) with an
     intensity of :math:`\pi` times the colour. Not for integrators that start paths at lights.
@@ -33,6 +38,7 @@ class AttenuatedPoint(mi.Emitter):
         self.position = mi.Point3d(props["position"])
         self.color = mi.Color3d(props["color"])
         self.attenuation = mi.Vector3d(props.get("attenuation", [1.0, 0.0, 0.0]))
+        self.radius = props.get("radius", 0.0)
         dr.make_opaque(self.position, self.color, self.attenuation)
         self.m_flags = mi.EmitterFlags.DeltaPosition
         self.m_needs_sample_2 = False
@@ -41,6 +47,12 @@ class AttenuatedPoint(mi.Emitter):
     def sample_direction(self, it, sample, active=True):
         ds = dr.zeros(mi.DirectionSample3f)
         ds.p = mi.Point3f(self.position)
+        if self.radius > 0:
+            center = mi.Vector3f(ds.p - it.p)
+            tangent, bitangent = sampler.frame(quotient(center, dr.norm(center)))
+            # A coordinate of exactly 1/2 has no place in the disc.
+            x, y = sampler.disc_point(*dr.select(sample == 0.5, 0.5 + dr.epsilon(mi.Float), sample))
+            ds.p += self.radius * (x * tangent + y * bitangent)
         ds.time = it.time
         ds.pdf = 1.0
         ds.delta = True
@@ -76,7 +88,8 @@ class AttenuatedPoint(mi.Emitter):
         callback.put("attenuation", self.attenuation, mi.ParamFlags.Differentiable)
 
     def to_string(self):
-        return f"AttenuatedPoint[position={self.position}, color={self.color}, attenuation={self.attenuation}]"
+        numbers = f"position={self.position}, color={self.color}, attenuation={self.attenuation}, radius={self.radius}"
+        return f"AttenuatedPoint[{numbers}]"
 
 
 mi.register_emitter("attenuated_point", AttenuatedPoint)

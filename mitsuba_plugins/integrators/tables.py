@@ -90,7 +90,7 @@ def _color_function(texture: Any) -> Any:
 
 
 class Lights:
-    """Positions, colours and attenuations of the scene's emitters."""
+    """Positions, colours, attenuations and radii of the scene's emitters."""
 
     def __init__(self, types: Real, emitters: list[Any]) -> None:
         self._types = types
@@ -100,18 +100,26 @@ class Lights:
         self.count = len(emitters)
         self.positions = np.zeros((0, 3))
         """(n, 3), in double precision."""
+        self.radii = np.zeros(0)
+        """(n,), 0 of a point."""
         if emitters:
             zero = mi.Float64(0)
-            places = [n for e in emitters for n in (*e.position, zero, *e.attenuation, zero)]
+            places = [n for e in emitters for n in (*e.position, mi.Float64(e.radius), *e.attenuation, zero)]
             exact = dr.concat(places)
             self._places = types.Float(exact)
             self._colors = types.Float(dr.concat([n for e in emitters for n in (*e.color, zero)]))
             dr.make_opaque(self._places, self._colors)
-            self.positions = np.array(dr.detach(exact)).reshape(-1, 8)[:, :3]
+            rows = np.array(dr.detach(exact)).reshape(-1, 8)
+            self.positions, self.radii = rows[:, :3], rows[:, 3]
 
-    def get(self, light: Any, active: Any) -> tuple[Any, Any, Any]:
-        """Position (Point3), colour (Color3) and attenuation (Vector3) of a light, by its index."""
+    def get(self, light: Any, active: Any) -> tuple[Any, Any, Any, Any]:
+        """Position (Point3), radius, colour (Color3) and attenuation (Vector3) of a light, by its index."""
         position = dr.gather(self._types.Vector4, self._places, 2 * light, active)
         attenuation = dr.gather(self._types.Vector4, self._places, 2 * light + 1, active)
         color = dr.gather(self._types.Vector4, self._colors, light, active)
-        return self._types.Point3(position.xyz), self._types.Color3(color.xyz), self._types.Vector3(attenuation.xyz)
+        return (
+            self._types.Point3(position.xyz),
+            position.w,
+            self._types.Color3(color.xyz),
+            self._types.Vector3(attenuation.xyz),
+        )

@@ -8,6 +8,7 @@ import drjit as dr
 import mitsuba as mi
 import numpy as np
 
+from mitsuba_plugins import sampler as samples
 from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.integrators.pace import Pace
 from mitsuba_plugins.integrators.stack import RayStack
@@ -88,6 +89,10 @@ class Whitted(mi.SamplingIntegrator):
        - |float|
        - A ray whose weight, the product of kr and kt so far, is below it is not traced (Default: 1/512)
 
+     * - seed
+       - |int|
+       - Start of the random numbers, where a light has a radius (Default: 0)
+
      * - reflection, refraction, branching
        - |bool|
        - Follow mirrored rays, refracted rays, and both from one surface (Default: true, true, true)
@@ -115,6 +120,7 @@ class Whitted(mi.SamplingIntegrator):
     The scene's shapes are needed for ``mesh``, ``offset`` and ``ulp`` only. Every light is an ``attenuated_point``.
     Switching off what a scene does not need makes it faster and changes nothing else. In double precision rays keep
     their origins and directions so from bounce to bounce, and, where the sensor is a ``pinhole``, from the camera on.
+    Random numbers are the native tracer's (see :mod:`mitsuba_plugins.sampler`), whatever the scene's sampler.
     Whitted, An Improved Illumination Model for Shaded Display, Communications of the ACM 23(6), 1980. Not for indirect
     diffuse light, area lights or gradients.
     """
@@ -154,6 +160,7 @@ class Whitted(mi.SamplingIntegrator):
         self.highlights = props.get("highlights", True)
         self.stack_size = max(1, props.get("waiting", props.get("max_depth", 16)))
         self.depth_limited = props.get("depth_limited", False)
+        self.seed = props.get("seed", 0)
         self.pixels_too_deep = 0
         self._tracer: Any = None
         self._eye_contact: EyeContact | None = None
@@ -178,8 +185,9 @@ class Whitted(mi.SamplingIntegrator):
         self._materials = Materials(self.types, [self._bsdfs.by_name[surface.material] for surface in self.surfaces])
         self._lights = Lights(self.types, scene.emitters())
         self.light_count = self._lights.count
+        self.sampled = self.shadows and bool(self._lights.radii.any())
         contacts = Contacts(self.surfaces)
-        self._light_contacts = LightContacts(self.types, contacts, self._lights.positions)
+        self._light_contacts = LightContacts(self.types, contacts, self._lights.positions, self._lights.radii)
         self._eye_contact = EyeContact(self.types, contacts, np.ravel(sensor.eye)) if hasattr(sensor, "eye") else None
         self._errors_of_primary_rays = camera_errors(self.types, sensor)
         if self.intersections == "analytic":
@@ -213,10 +221,14 @@ class Whitted(mi.SamplingIntegrator):
             return self.types.Vector3(0)
         return coordinate_errors(hit.p, hit.n, ray.d, hit.t, hit.off)
 
-    def light(self, index, ray: Ray, hit: Hit, finish: Finish, color, active) -> Illumination:
-        """What one light, by its index, adds at a hit."""
-        position, emission, (a, b, c) = self._lights.get(index, active)
+    def light(self, index, ray: Ray, hit: Hit, finish: Finish, color, active, sample, path) -> Illumination:
+        """What one light, by its index, adds at a hit of a `sample`'s ray of that path."""
+        position, radius, emission, (a, b, c) = self._lights.get(index, active)
         to_light = position - hit.p
+        error = hit.error
+        if self.sampled:
+            square = sample.square(self.types.Float, path, samples.FIRST_LIGHT + index)
+            to_light, error = _to_disc(to_light, position, radius, square, error)
         distance = dr.norm(to_light)
         to_light = to_light * quotient(1, distance)
         n = dr.select(hit.inside, -hit.n, hit.n)
@@ -229,7 +241,7 @@ class Whitted(mi.SamplingIntegrator):
             & apart
             & ~self._light_contacts.grazes(index, hit.primitive, active)
         )
-        blocker = self._tracer.blocker(hit, to_light, distance, index, facing)
+        blocker = self._tracer.blocker(hit, to_light, distance, error, index, facing)
         attenuation = a + distance * (b + distance * c)
         # Masked at the end: a light at the hit itself has no direction, and nothing times no number is no number.
         lit = facing & (blocker == NOTHING)
@@ -259,9 +271,9 @@ class Whitted(mi.SamplingIntegrator):
     # ------------------------------------------------------------------ the ray tree
 
     @dr.syntax
-    def trace(self, ray: Ray, active):
+    def trace(self, ray: Ray, sample, active):
         """Radiance (Color3) along rays: the whole tree below each, in one kernel; and, if `depth_limited`, whether
-        the limit dropped a ray that the cut-off would have kept, else False.
+        the limit dropped a ray that the cut-off would have kept, else False. Each is the primary ray of a `sample`.
 
         Where a surface sends on two rays, the heavier one waits on a stack in local memory.
         """
@@ -273,11 +285,12 @@ class Whitted(mi.SamplingIntegrator):
         active = active & lanes(width)
         too_deep = dr.zeros(mi.Bool, width) if self.depth_limited else False
         waiting = dr.zeros(mi.UInt32, width)
-        stack = RayStack(self.types, self.stack_size if self.branching else 0)
+        stack = RayStack(self.types, self.stack_size if self.branching else 0, self.sampled)
+        path = dr.full(mi.UInt32, samples.PRIMARY_PATH, width) if self.sampled else mi.UInt32(0)
         while active:
             hit = self.closest(ray, active)
             finish, color = self.material(ray, hit)
-            local = self.local_radiance(ray, hit, finish, color)
+            local = self.local_radiance(ray, hit, finish, color, sample, path)
             radiance += weight * dr.select(hit.valid, local, self.types.Color3(self.background))
 
             depth += 1
@@ -293,24 +306,37 @@ class Whitted(mi.SamplingIntegrator):
                 mirrors_first = mirrors & ~(refracts & (finish.kt < finish.kr))
                 later = dr.select(mirrors_first, through, mirrored)
                 later_weight = dr.select(mirrors_first, through_weight, mirror_weight)
-                stack.write(waiting, later, later_weight, depth, pushes)
+                if dr.hint(self.sampled, mode="scalar"):
+                    later_path = 2 * path + dr.select(mirrors_first, mi.UInt32(1), 0)
+                    path = 2 * path + dr.select(mirrors_first, mi.UInt32(0), 1)
+                else:
+                    later_path = path
+                stack.write(waiting, later, later_weight, depth, later_path, pushes)
                 waiting += dr.select(pushes, mi.UInt32(1), 0)
                 ray = dr.select(mirrors_first, mirrored, through)
                 weight = dr.select(mirrors_first, mirror_weight, through_weight)
                 resumes = ~active & (waiting > 0)
                 waiting -= dr.select(resumes, mi.UInt32(1), 0)
-                waiting_ray, waiting_weight, waiting_depth = stack.read(waiting, resumes)
+                waiting_ray, waiting_weight, waiting_depth, waiting_path = stack.read(waiting, resumes)
                 ray = dr.select(resumes, waiting_ray, ray)
                 weight = dr.select(resumes, waiting_weight, weight)
                 depth = dr.select(resumes, waiting_depth, depth)
+                if dr.hint(self.sampled, mode="scalar"):
+                    path = dr.select(resumes, waiting_path, path)
                 active |= resumes
             elif dr.hint(self.reflection and self.refraction, mode="scalar"):
+                if dr.hint(self.sampled, mode="scalar"):
+                    path = 2 * path + dr.select(mirrors, mi.UInt32(0), 1)
                 weight = dr.select(mirrors, mirror_weight, through_weight)
                 ray = dr.select(mirrors, self.reflected(ray, hit), self.transmitted(ray, hit, finish.eta)[0])
             elif dr.hint(self.reflection, mode="scalar"):
+                if dr.hint(self.sampled, mode="scalar"):
+                    path = 2 * path
                 weight = mirror_weight
                 ray = self.reflected(ray, hit)
             elif dr.hint(self.refraction, mode="scalar"):
+                if dr.hint(self.sampled, mode="scalar"):
+                    path = 2 * path + 1
                 weight = through_weight
                 ray = self.transmitted(ray, hit, finish.eta)[0]
         return radiance, too_deep
@@ -332,14 +358,14 @@ class Whitted(mi.SamplingIntegrator):
         return weight, active & (weight > 0) & (weight >= self.cutoff)
 
     @dr.syntax
-    def local_radiance(self, ray: Ray, hit: Hit, finish: Finish, color):
+    def local_radiance(self, ray: Ray, hit: Hit, finish: Finish, color, sample, path):
         """What a surface sends back along a ray by itself (Color3): ambient light, and what the lights add."""
         radiance = finish.ka * self.types.Color3(self.ambient) * color
         if dr.hint(self.shadows, mode="scalar"):
             lit = hit.valid & (finish.kd + finish.ks > 0)
             light = dr.zeros(mi.UInt32, dr.width(ray.d))
             while lit & (light < self.light_count):
-                illumination = self.light(light, ray, hit, finish, color, lit)
+                illumination = self.light(light, ray, hit, finish, color, lit, sample, path)
                 radiance += illumination.diffuse + illumination.specular
                 light += 1
         return radiance
@@ -349,7 +375,10 @@ class Whitted(mi.SamplingIntegrator):
     def sample(self, scene, sampler, ray, medium=None, active=True):
         """Radiance along single-precision rays, of any sensor."""
         with self.prepared(scene):
-            color, _ = self.trace(start_ray(self.types, ray.o, unit(mi.Vector3d(ray.d))), active)
+            # Which sample of which pixel a ray is, nobody tells here.
+            key = mi.UInt32(mi.Float64(sampler.next_1d()) * 2.0**32) if self.sampled else mi.UInt32(0)
+            sample = samples.Sample(key, mi.UInt32(0))
+            color, _ = self.trace(start_ray(self.types, ray.o, unit(mi.Vector3d(ray.d))), sample, active)
         return mi.Color3f(color), mi.Bool(active), []
 
     def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
@@ -413,10 +442,12 @@ class Whitted(mi.SamplingIntegrator):
         """What `trace` finds for the pixels of whole rows from row `first` on, with some more samples added."""
         width = dr.width(color)
         corner = _corners(sensor.film(), first, width)
+        key = self.pixel_key(corner)
         if dr.hint(dr.width(offsets) == 2, mode="scalar"):
             # One sample needs no loop, which takes twice as long to record.
             position = corner + dr.gather(mi.Point2d, offsets, mi.UInt32(0))
-            more, deep = self.trace(self.primary_ray(sensor, position), True)
+            number = samples.Sample(key, mi.UInt32(0))
+            more, deep = self.trace(self.primary_ray(sensor, position), number, True)
             color += more
             too_deep |= deep
         else:
@@ -424,11 +455,18 @@ class Whitted(mi.SamplingIntegrator):
             sample, end = dr.opaque(mi.UInt32, sample, width), dr.opaque(mi.UInt32, end)
             while sample < end:
                 position = corner + dr.gather(mi.Point2d, offsets, sample)
-                more, deep = self.trace(self.primary_ray(sensor, position), True)
+                number = samples.Sample(key, sample)
+                more, deep = self.trace(self.primary_ray(sensor, position), number, True)
                 color += more
                 too_deep |= deep
                 sample += 1
         return color, too_deep
+
+    def pixel_key(self, corner):
+        """The key of the random numbers of pixels, by their top left corners (Point2d)."""
+        if not self.sampled:
+            return mi.UInt32(0)
+        return samples.pixel_key(dr.opaque(mi.UInt32, self.seed), mi.UInt32(corner.x), mi.UInt32(corner.y))
 
     @staticmethod
     def sample_offsets(spp):
@@ -476,6 +514,20 @@ class Bsdfs:
 
     def __init__(self, by_name):
         self.by_name = by_name
+
+
+def _to_disc(center, position, radius, square, error):
+    """From a point to a point of a light, and how far these two may be off, given how far the first may.
+
+    The way to the light's centre is given: the disc lies across it, and turns with it where the point is off.
+    """
+    nearness = quotient(1, dr.norm(center))
+    tangent, bitangent = samples.frame(center * nearness)
+    x, y = samples.disc_point(*square)
+    off = radius * (error * nearness + 8 * epsilon(radius)) + 8 * epsilon(radius) * largest(position)
+    is_disc = radius > 0
+    way = center + (radius * x) * tangent + (radius * y) * bitangent
+    return dr.select(is_disc, way, center), dr.select(is_disc, error + off, error)
 
 
 def _materials(props, surfaces):

@@ -90,10 +90,10 @@ class _Place(NamedTuple):
 class LightContacts:
     """The contacts of lights, for kernels, in which nothing of this appears where no light lies on anything."""
 
-    def __init__(self, types: Real, contacts: Contacts, positions: Numbers) -> None:
-        """Take the lights' positions (n, 3)."""
+    def __init__(self, types: Real, contacts: Contacts, positions: Numbers, radii: Numbers) -> None:
+        """Take the lights' positions (n, 3) and radii (n,); those that are no points lie on nothing."""
         self._types = types
-        by_light = [contacts.of(position) for position in positions]
+        by_light = [contacts.of(at) if radius == 0 else [] for at, radius in zip(positions, radii, strict=True)]
         found = [contact for of_one in by_light for contact in of_one]
         self.objects = {contact.object for contact in found}
         """The objects that some light lies on."""

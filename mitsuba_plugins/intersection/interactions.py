@@ -41,7 +41,7 @@ class MitsubaSurfaces:
         """The ray that leaves `hit` in direction `d`."""
         return Ray(self._offset(hit, d), d, hit.object, hit.primitive, inside, mi.Float(0), spread)
 
-    def blocker(self, hit: Hit, d: Any, distance: Any, light: Any, active: Any) -> Any:
+    def blocker(self, hit: Hit, d: Any, distance: Any, error: Any, light: Any, active: Any) -> Any:
         """The first object between `hit` and a light at `distance` in direction `d`, or NOTHING."""
         origin = self._offset(hit, d)
         to_target = hit.p + d * distance - origin

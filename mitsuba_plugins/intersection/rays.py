@@ -134,9 +134,9 @@ def reflect(d: Any, n: Any) -> Any:
     return unit(d - n * (2 * dr.dot(d, n)))
 
 
-def shadow_spread(hit: Hit, distance: Any) -> Any:
-    """How far the direction to a light may be off: it leads there from wherever the point really is."""
-    turn = quotient(hit.error, distance)
+def shadow_spread(error: Any, distance: Any) -> Any:
+    """How far the direction to a light may be off, whose ends may together be off by `error`."""
+    turn = quotient(error, distance)
     return dr.minimum(least_spread(distance) + turn, most_blur(distance))
 
 

@@ -46,9 +46,11 @@ class ExactSurfaces:
         """The ray that leaves `hit` in direction `d`, on the given side of the object."""
         return spawn(hit, d, inside, spread)
 
-    def blocker(self, hit: Hit, d: Any, distance: Any, light: Any, active: Any) -> Any:
-        """Some object between `hit` and a light at `distance` in direction `d`, on the side it was seen from."""
-        ray = spawn(hit, d, hit.inside, shadow_spread(hit, distance))
+    def blocker(self, hit: Hit, d: Any, distance: Any, error: Any, light: Any, active: Any) -> Any:
+        """Some object between `hit` and a light at `distance` in direction `d`, on the side it was seen from; these two
+        ends of the way may be off by `error`.
+        """
+        ray = spawn(hit, d, hit.inside, shadow_spread(error, distance))
         found, close = self.find_blocker(ray, distance, light, active)
         if close is None or not decides_ties(distance):
             return found

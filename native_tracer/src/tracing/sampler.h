@@ -127,7 +127,7 @@ template <typename Word>
 template <typename Real>
 struct WordRows {
     typedef std::uint32_t Words __attribute__((vector_size(sizeof(typename Register<Real>::Reals))));
-    static constexpr int words = sizeof(Words) / sizeof(std::uint32_t);
+    static constexpr int words = sizeof(typename Register<Real>::Reals) / sizeof(std::uint32_t);
     static constexpr int size = std::max(words, lane_count<Real>);
     using Row = std::array<std::uint32_t, size>;
 };
@@ -161,6 +161,7 @@ template <typename Real>
 [[gnu::noinline]] PlanePoint<Real> square_point(const SampleNames<Real>& names, std::uint32_t use) {
     using Rows = WordRows<Real>;
     using Words = typename Rows::Words;
+    static_assert(sizeof(Words) == Rows::words * sizeof(std::uint32_t) && Rows::size % Rows::words == 0);
     typename Rows::Row x, y;
     for (int first = 0; first < Rows::size; first += Rows::words) {
         Words pixel_key, number, path;
