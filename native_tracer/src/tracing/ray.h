@@ -72,7 +72,7 @@ template <typename Group, typename Visit>
 template <typename Real>
 class RayStack {
  public:
-    explicit RayStack(bool sampled) : sampled_(sampled) {}
+    explicit RayStack(bool sampled) : sampled_(sampled), fields_(sampled ? fields_of(true) : fields_of(false)) {}
 
     std::size_t size() const { return size_; }
     void clear() { size_ = 0; }
@@ -106,7 +106,7 @@ class RayStack {
         const std::size_t moved = std::min(most, size_);
         to.reserve(moved);
         size_ -= moved;
-        for (std::size_t field = 0; field < fields; ++field) {
+        for (std::size_t field = 0; field < fields_; ++field) {
             std::copy_n(cells_.data() + field * capacity_ + size_, moved,
                         to.cells_.data() + field * to.capacity_ + to.size_);
         }
@@ -117,13 +117,13 @@ class RayStack {
     struct Cell {
         Real value;  // or an integer
     };
-    // As many as for_each_field() visits at most.
-    static constexpr std::size_t fields = [] {
+    // As many as for_each_field() visits.
+    static constexpr std::size_t fields_of(bool sampled) {
         Group<Real> group;
         std::size_t number = 0;
-        for_each_field(group, true, [&](const auto&) { ++number; });
+        for_each_field(group, sampled, [&](const auto&) { ++number; });
         return number;
-    }();
+    }
 
     // Makes room for so many rays, and for a whole group behind them.
     void reserve(std::size_t rays) {
@@ -131,8 +131,8 @@ class RayStack {
         if (needed <= capacity_) {
             return;
         }
-        std::vector<Cell> cells(fields * 2 * needed);
-        for (std::size_t field = 0; field < fields; ++field) {
+        std::vector<Cell> cells(fields_ * 2 * needed);
+        for (std::size_t field = 0; field < fields_; ++field) {
             std::copy_n(cells_.data() + field * capacity_, size_, cells.data() + field * 2 * needed);
         }
         cells_ = std::move(cells);
@@ -140,6 +140,7 @@ class RayStack {
     }
 
     const bool sampled_;
+    const std::size_t fields_;
     std::vector<Cell> cells_;  // fields x capacity
     std::size_t capacity_ = 0;
     std::size_t size_ = 0;

@@ -324,7 +324,6 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
     successors.depth = group.depth + Indices<Real>(1);
     successors.pixel = group.pixel;
     successors.record = group.record;
-    successors.sample = group.sample;
     const auto push = [&](RayKind kind, const Turn& turn, L weight, Mask<Real> followed, RayStack<Real>& stack,
                           std::uint64_t& counter) {
         successors.rays.direction = turn.direction;
@@ -333,6 +332,7 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
         successors.weight = weight;
         successors.active = followed;
         if (scene_.sampled) {
+            successors.sample = group.sample;
             successors.path = Indices<Real>::gather([&](int lane) {
                 const auto path = static_cast<std::uint32_t>(group.path[lane]);
                 return static_cast<int>(kind == RayKind::reflected ? mirrored_path(path) : transmitted_path(path));
