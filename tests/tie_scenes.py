@@ -6,10 +6,10 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
-from converter.scene.model import Checker, Finish, Polyhedron, Scene, Texmap, Vector
+from converter.scene.model import Checker, Finish, Polyhedron, Quadric, Scene, Shape, Texmap, Vector
 from converter.scene.settings import Settings
 from converter.studies.exact.tracer import ExactTracer, Pixel
-from converter.studies.families.scenes import GLOW, MATTE, WHITE, Body, box, camera, floor, light, scene, sphere
+from converter.studies.families.scenes import GLASS, GLOW, MATTE, WHITE, Body, box, camera, floor, light, scene, sphere
 
 RED, GREEN, BLUE = (0.9, 0.2, 0.1), (0.1, 0.8, 0.2), (0.1, 0.2, 0.9)
 MIRROR = Finish(0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0)
@@ -296,6 +296,83 @@ def _eye(eye: Vector, along: Vector = LEVEL):
     ]
     return lambda: scene(view(eye, along), bodies)
 
+
+# ---- Of one ray each
+
+
+def _row_of_glass(eye: Vector, along: Vector, balls: int) -> Scene:
+    """The ray meets every ball's centre, where an error of its direction grows more than tenfold, and then a tile's
+    corner.
+    """
+
+    def at(t: float) -> Vector:
+        x, y, z = (round(e + t * a, 6) for e, a in zip(eye, along, strict=True))
+        return x, y, z
+
+    bodies: list[Body] = [(sphere(at(2.0 * k), 0.1), WHITE, GLASS) for k in range(1, balls + 1)]
+    bodies.append((wall((0.0, 0.0, 1.0), -at(2.0 * balls + 2.0)[2]), checker(0.02), GLOW))
+    return scene(view(eye, along), bodies)
+
+
+def _sunk(body: Callable[[Vector, float], Shape], center: Vector, side: tuple[float, float], lean: float) -> Scene:
+    """A body of clear glass stands in a mirror, which the ray meets at the body's edge: it goes on inside of that,
+    leaning inward so little that a rounding error would be a way.
+    """
+    (x, z), radius = side, 0.7
+    along = (-z - lean * x, -1.0, x - lean * z)
+    edge = (center[0] + radius * x, center[1], center[2] + radius * z)
+    a, b, c = (round(e - way, 8) for e, way in zip(edge, along, strict=True))
+    return scene(view((a, b, c), along), [(floor(center[1]), WHITE, MIRROR), (body(center, radius), RED, CLEAR)])
+
+
+def _ellipsoid(center: Vector, radius: float) -> Quadric:
+    """Half as high as a ball, but for a root."""
+    x, y, z = center
+    g, h, i = (round(-2 * factor * c, 9) for factor, c in zip((1, 2, 1), center, strict=True))
+    return Quadric((1.0, 2.0, 1.0, 0.0, 0.0, 0.0, g, h, i, round(x * x + 2 * y * y + z * z - radius * radius, 9)))
+
+
+def _cylinder(center: Vector, radius: float) -> Quadric:
+    """Upright."""
+    x, _, z = center
+    return Quadric(
+        (
+            1.0,
+            0.0,
+            1.0,
+            0.0,
+            0.0,
+            0.0,
+            round(-2 * x, 9),
+            0.0,
+            round(-2 * z, 9),
+            round(x * x + z * z - radius * radius, 9),
+        )
+    )
+
+
+def _in_mirrors(body: Callable[[Vector, float], Shape]) -> list[Scene]:
+    return [
+        _sunk(body, center, side, lean)
+        for center in ((33.3, 1.7, 5.9), (12.1, 0.3, -6.7))
+        for side in ((0.6, 0.8), (0.8, 0.6), (0.28, 0.96), (-0.6, 0.8))
+        for lean in (0.01, 0.001)
+    ]
+
+
+ONE_RAY = replace(SETTINGS, width=1, height=1, pixel="center", max_depth=12)
+RAYS: dict[str, Callable[[], list[Scene]]] = {
+    "through a row of glass": lambda: [
+        _row_of_glass(eye, along, balls)
+        for eye in ((0.1, 0.3, 0.2), (12.1, 3.3, 7.2))
+        for along in ((0.6, 0.0, -0.8), (0.48, 0.6, -0.64), (0.36, 0.48, -0.8))
+        for balls in (3, 4)
+    ],
+    "into a ball in a mirror": lambda: _in_mirrors(sphere),
+    "into an ellipsoid in a mirror": lambda: _in_mirrors(_ellipsoid),
+    "into a cylinder in a mirror": lambda: _in_mirrors(_cylinder),
+}
+"""By a name: scenes of which one ray each is followed. Of errors by chance not all are too small to be seen."""
 
 TIE_SCENES: dict[str, tuple[str, Callable[[], Scene], Settings]] = {
     name: (kind, made, replace(SETTINGS, **changes))
