@@ -355,6 +355,19 @@ def test_boxes_lose_no_hit(precision):
     assert pixels(add, precision=precision, search="brute") == pixels(add, precision=precision, search="bvh")
 
 
+@pytest.mark.parametrize("leaf", ["cylinder", "parallel planes", "crossing planes"])
+def test_a_ray_along_a_leaf_meets_what_cuts_that_off(leaf):
+    """It crosses the leaf nowhere, and is inside of it, or of its complement, all the way."""
+    eyes = [(0.25, 0.5, 7), (2, 0.5, 7)]
+    inside = [contains([("quadric", KINDS[leaf])], [0], eye) for eye in eyes]
+    for sign, hits in ((1, inside), (-1, [not hit for hit in inside])):
+        quadric = ("quadric", tuple(sign * number for number in KINDS[leaf]))
+        scene = scene_of([quadric, ("polyhedron", [(0, 0, 1, -1)])], [A, B, INTERSECT])
+        for eye, hit in zip(eyes, hits, strict=True):
+            ray = trace_ray(scene, eye, (0, 0, -1))
+            assert (ray["hit"] and ray["hit"]["t"]) == (6 if hit else None)
+
+
 # ---- Eyes and lights ------------------------------------------------------------------------------------------------
 
 

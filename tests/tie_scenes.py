@@ -325,6 +325,30 @@ def _sunk(body: Callable[[Vector, float], Shape], center: Vector, side: tuple[fl
     return scene(view((a, b, c), along), [(floor(center[1]), WHITE, MIRROR), (body(center, radius), RED, CLEAR)])
 
 
+def _beside(body: Callable[[Vector, float], Shape], center: Vector, side: tuple[float, float], lean: float) -> Scene:
+    """The body stands on a floor, whose point at its edge has light that comes from above, and from beside the body by
+    so little.
+    """
+    (x, z), radius = side, 0.7
+    edge = (center[0] + radius * x, center[1], center[2] + radius * z)
+
+    def at(out: float, up: float) -> Vector:
+        a, b, c = (round(e + way, 8) for e, way in zip(edge, (out * x, up, out * z), strict=True))
+        return a, b, c
+
+    bodies = [(floor(center[1]), WHITE, MATTE), (body(center, radius), RED, GLOW)]
+    return scene(view(at(2.0, 1.0), (-2.0 * x, -1.0, -2.0 * z)), bodies, [light(at(10 * lean, 10.0))])
+
+
+def _touched(body: Callable[[Vector, float], Shape], center: Vector, side: tuple[float, float], lean: float) -> Scene:
+    """The ray touches the body, and passes."""
+    (x, z), radius = side, 0.7
+    along = (-z, 10 * lean, x)
+    edge = (center[0] + radius * x, center[1], center[2] + radius * z)
+    a, b, c = (round(e - way, 8) for e, way in zip(edge, along, strict=True))
+    return scene(view((a, b, c), along), [(body(center, radius), RED, GLOW)])
+
+
 def _ellipsoid(center: Vector, radius: float) -> Quadric:
     """Half as high as a ball, but for a root."""
     x, y, z = center
@@ -351,9 +375,12 @@ def _cylinder(center: Vector, radius: float) -> Quadric:
     )
 
 
-def _in_mirrors(body: Callable[[Vector, float], Shape]) -> list[Scene]:
+def _at_edges(
+    made: Callable[[Callable[[Vector, float], Shape], Vector, tuple[float, float], float], Scene],
+    body: Callable[[Vector, float], Shape],
+) -> list[Scene]:
     return [
-        _sunk(body, center, side, lean)
+        made(body, center, side, lean)
         for center in ((33.3, 1.7, 5.9), (12.1, 0.3, -6.7))
         for side in ((0.6, 0.8), (0.8, 0.6), (0.28, 0.96), (-0.6, 0.8))
         for lean in (0.01, 0.001)
@@ -368,9 +395,14 @@ RAYS: dict[str, Callable[[], list[Scene]]] = {
         for along in ((0.6, 0.0, -0.8), (0.48, 0.6, -0.64), (0.36, 0.48, -0.8))
         for balls in (3, 4)
     ],
-    "into a ball in a mirror": lambda: _in_mirrors(sphere),
-    "into an ellipsoid in a mirror": lambda: _in_mirrors(_ellipsoid),
-    "into a cylinder in a mirror": lambda: _in_mirrors(_cylinder),
+    "into a ball in a mirror": lambda: _at_edges(_sunk, sphere),
+    "into an ellipsoid in a mirror": lambda: _at_edges(_sunk, _ellipsoid),
+    "into a cylinder in a mirror": lambda: _at_edges(_sunk, _cylinder),
+    "out beside a ball": lambda: _at_edges(_beside, sphere),
+    "out beside an ellipsoid": lambda: _at_edges(_beside, _ellipsoid),
+    "touching a ball": lambda: _at_edges(_touched, sphere),
+    "touching an ellipsoid": lambda: _at_edges(_touched, _ellipsoid),
+    "touching a cylinder": lambda: _at_edges(_touched, _cylinder),
 }
 """By a name: scenes of which one ray each is followed. Of errors by chance not all are too small to be seen."""
 
