@@ -379,10 +379,11 @@ def _at_edges(
     made: Callable[[Callable[[Vector, float], Shape], Vector, tuple[float, float], float], Scene],
     body: Callable[[Vector, float], Shape],
 ) -> list[Scene]:
+    """Bodies whose numbers are rounded up, and such whose are rounded down."""
     return [
         made(body, center, side, lean)
-        for center in ((33.3, 1.7, 5.9), (12.1, 0.3, -6.7))
-        for side in ((0.6, 0.8), (0.8, 0.6), (0.28, 0.96), (-0.6, 0.8))
+        for center in ((33.3, 1.7, 5.9), (12.1, 0.3, -6.7), (1.3, 0.1, 7.7), (122.76, 0.27, -166.1))
+        for side in ((0.6, 0.8), (-0.6, 0.8), (-0.8, 0.6))
         for lean in (0.01, 0.001)
     ]
 
