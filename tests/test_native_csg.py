@@ -224,6 +224,10 @@ A, B, C = 0, 1, 2
 PAIRS = {
     "a csg of one": (csg([BALL], A), lambda s, p, f: s.add_sphere(p, f, BALL[1][:3], BALL[1][3])),
     "a box of half-spaces": (csg(half_spaces(BOX), *all_of(6)), lambda s, p, f: s.add_polyhedron(p, f, BOX[1])),
+    "a box without a half-space": (
+        csg([BOX, ("polyhedron", [(1, 2, 0, 0.5)])], A, B, SUBTRACT),
+        lambda s, p, f: s.add_polyhedron(p, f, [*BOX[1], (-1, -2, 0, -0.5)]),
+    ),
     "A - A": (csg([BALL, BALL], A, B, SUBTRACT), lambda s, p, f: None),
     "A - A, a box": (csg([BOX, BOX], A, B, SUBTRACT), lambda s, p, f: None),
     "A - A, a cone": (csg([CONE, CONE], A, B, SUBTRACT), lambda s, p, f: None),

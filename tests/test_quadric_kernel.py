@@ -229,7 +229,7 @@ def test_a_complement_has_the_same_rows_but_for_signs():
     """So that a surface is met at the same distance from both sides."""
     from mitsuba_plugins.intersection.shapes import quadric
 
-    for numbers in np.random.default_rng(3).uniform(-3, 3, size=(20, 10)).round(2).tolist():
+    for numbers in np.random.default_rng(3).integers(-3, 4, size=(100, 10)).astype(float).tolist():
         one, other = (quadric.read({"quadric": [sign * x for x in numbers]}).rows for sign in (1, -1))
         assert [*quadric.turned(tuple(one))] == other
 
