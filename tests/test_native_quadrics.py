@@ -223,18 +223,16 @@ def test_a_ray_that_leaves_one_sheet_meets_the_other():
     assert first["hit"]["entering"] and second["hit"]["entering"]
 
 
-@pytest.mark.parametrize(("precision", "distance"), [("float", 2.0**13), ("double", 2.0**42)])
-def test_a_ray_that_is_mirrored_off_a_ball_never_meets_it(precision, distance):
-    """From so far that the ray almost grazes where it is met, and a rounding error may lead inside."""
-    scene = scene_of(KINDS["ball"], kr=1)
-    met = 0
-    for k in range(1, 200):
-        first, *others = chain(
-            trace_ray(scene, (0, 1 - k * 2.0**-23, -distance), (0, 0, 1), precision=precision, max_depth=1)
-        )
-        met += first["hit"] is not None
-        assert all(other["hit"] is None for other in others), k
-    assert met > 100
+def test_a_ray_that_is_mirrored_off_an_ellipsoid_never_meets_it():
+    """From so far that it grazes, but for rounding errors, which may lead the mirrored ray inside."""
+    scene = scene_of(KINDS["ellipsoid"], kr=1)
+    grazes = 0
+    for k in range(1, 1000):
+        eye = (1 - (1 + k % 3) * 2.0**-24, 0, -(2.0**16) * (1 + k / 1000))
+        first, second = chain(trace_ray(scene, eye, (0, 0, 1), precision="float", max_depth=1))
+        grazes += first["hit"]["normal"][2] > 0
+        assert second["hit"] is None, k
+    assert grazes > 4
 
 
 # ---- Where it is decided by rule -------------------------------------------------------------------------------------
@@ -341,7 +339,7 @@ def test_balls_are_spheres(precision):
 
 def museum(scale=1.0):
     """Quadrics of all kinds that reflect, refract and shade one another."""
-    rng = random.Random(5)
+    rng = random.Random(1)
     scene = new_scene(WHITE, (0.2, 0.3, 0.5))
     scene.set_camera((0, 3 * scale, 12 * scale), (0, 0, 0), (0, 1, 0), 45)
     scene.add_light((5 * scale, 8 * scale, 6 * scale), WHITE, CONSTANT)
@@ -361,6 +359,7 @@ def museum(scale=1.0):
 @pytest.mark.parametrize("precision", PRECISIONS)
 def test_boxes_lose_no_hit(precision):
     found = pixels(museum(), precision=precision, search="brute")
+    assert len(set(found)) > 1000
     assert found == pixels(museum(), precision=precision, search="bvh")
 
 
