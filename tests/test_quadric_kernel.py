@@ -193,6 +193,14 @@ def test_a_ray_along_a_cone_s_side_or_a_paraboloid_s_axis_meets_it_once(mi):
     assert np.array_equal(np.array(hollow.enters), [False, True])
 
 
+def test_a_ray_leaves_a_hollow_body_where_it_enters_a_ball(mi):
+    o, d = np.array([[0.0, 0.0, -5.0], [0.0, 0.0, 0.0]]), np.array([[0.0, 0.0, 1.0]] * 2)
+    for name, enters in (("hollow", [False, True]), ("ball", [True, False])):
+        crossing = Kernel(mi, QUADRICS[name], o, d).first_crossing()
+        assert np.array(crossing.t).tolist() == [4, 1]
+        assert np.array(crossing.enters).tolist() == enters
+
+
 @pytest.mark.parametrize("sign", [1, -1])
 @pytest.mark.parametrize("name", ["cylinder", "parallel planes", "crossing planes", "parabolic cylinder"])
 def test_a_line_that_crosses_nothing_is_inside_or_outside_all_the_way(mi, name, sign):
