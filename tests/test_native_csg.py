@@ -372,6 +372,28 @@ def test_a_ray_along_a_leaf_meets_what_cuts_that_off(leaf):
             assert (ray["hit"] and ray["hit"]["t"]) == (6 if hit else None)
 
 
+def test_a_ray_leaves_what_is_thinner_than_the_error_of_its_start():
+    """From so far that it comes to be inside of the ball for less than the first hit may be off."""
+    ball, other = ("sphere", (0, 0, 0, 1)), ("sphere", (3, 0, 0, 1))
+    scene = scene_of([ball, other], [A, B, UNITE], kt=1, eta=1)
+    for k in range(1, 8):
+        ray = trace_ray(scene, (0, 1 - k * 2.0**-16, -8192), (0, 0, 1), precision="float", max_depth=3)
+        entered = []
+        while ray["children"]:
+            entered.append(ray["hit"]["entering"])
+            (ray,) = ray["children"]
+        assert entered == [True, False], k
+
+
+def test_the_first_leaf_is_met_at_an_edge():
+    """Where a ball is cut off by a plane, a ray meets both at once, but for roundings."""
+    for x, y in ((0.8, 0.0), (0.48, 0.64), (-0.64, 0.48), (-0.768, 0.224), (0.0, -0.8)):
+        ball, plane = ("sphere", (0, 0, 0, 1)), ("polyhedron", [(0, 0, 1, -0.6)])
+        for leaves, normal in (([ball, plane], (x, y, 0.6)), ([plane, ball], (0, 0, 1))):
+            ray = trace_ray(scene_of(leaves, [A, B, INTERSECT]), (2 * x, 2 * y, 1.4), (-x, -y, -0.8))
+            assert ray["hit"]["normal"] == pytest.approx(normal)
+
+
 # ---- Eyes and lights ------------------------------------------------------------------------------------------------
 
 

@@ -6,7 +6,7 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
-from converter.scene.model import Checker, Finish, Polyhedron, Quadric, Scene, Shape, Texmap, Vector
+from converter.scene.model import Checker, Csg, Finish, Operand, Polyhedron, Quadric, Scene, Shape, Texmap, Vector
 from converter.scene.settings import Settings
 from converter.studies.exact.tracer import ExactTracer, Pixel
 from converter.studies.families.scenes import GLASS, GLOW, MATTE, WHITE, Body, box, camera, floor, light, scene, sphere
@@ -388,6 +388,15 @@ def _at_edges(
     ]
 
 
+def _cut_off(ball_first: bool, edge: tuple[float, float]) -> Scene:
+    """The ray meets a ball where a plane cuts it off: the first of both in the file."""
+    x, y = edge
+    parts: list[Shape] = [sphere((0.0, 0.0, 0.0), 1.0), wall((0.0, 0.0, 1.0), -0.6)]
+    first, second = parts if ball_first else parts[::-1]
+    body = Csg((Operand("+", first), Operand("&", second)))
+    return scene(view((2 * x, 2 * y, 1.4), (-x, -y, -0.8)), [(body, RED, MATTE)], [light((0.3, 0.2, 9.0))])
+
+
 ONE_RAY = replace(SETTINGS, width=1, height=1, pixel="center", max_depth=12)
 RAYS: dict[str, Callable[[], list[Scene]]] = {
     "through a row of glass": lambda: [
@@ -401,6 +410,11 @@ RAYS: dict[str, Callable[[], list[Scene]]] = {
     "into a cylinder in a mirror": lambda: _at_edges(_sunk, _cylinder),
     "out beside a ball": lambda: _at_edges(_beside, sphere),
     "out beside an ellipsoid": lambda: _at_edges(_beside, _ellipsoid),
+    "at the edge of a ball cut off": lambda: [
+        _cut_off(ball_first, edge)
+        for ball_first in (True, False)
+        for edge in ((0.8, 0.0), (0.48, 0.64), (-0.64, 0.48), (-0.768, 0.224), (0.0, -0.8))
+    ],
     "touching a ball": lambda: _at_edges(_touched, sphere),
     "touching an ellipsoid": lambda: _at_edges(_touched, _ellipsoid),
     "touching a cylinder": lambda: _at_edges(_touched, _cylinder),
