@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from converter.scene.model import Quadric, Vector
 from converter.shapes.quadric_frame import Frame, frame_of
 from converter.to_mitsuba.bounds import LARGEST, Box
+from converter.to_mitsuba.fineness import USUAL
 from converter.to_mitsuba.meshes.body import SMALLEST
 from converter.to_mitsuba.meshes.mesh import PolyhedronError
 
@@ -26,7 +27,7 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Triangles = NDArray[np.int64]
 
-OFF = 1 / 32
+OFF = USUAL.pixels
 """How much of a pixel the middle of an edge may be off the surface."""
 MOST_TRIANGLES = 1 << 20
 """Of one mesh, about: what asks for more stays coarser."""
@@ -53,7 +54,7 @@ class View(NamedTuple):
     Attributes:
         eye: where the camera is.
         near: no surface has to be finer than one at this distance.
-        pixel: the angle of a pixel.
+        pixel: the angle of a pixel, or of several where meshes may be coarser.
 
     """
 
