@@ -11,7 +11,7 @@ from converter.scene.model import Scene, Sphere
 from converter.scene.settings import Settings
 from converter.shapes.table import shape_kind
 from converter.to_mitsuba.bounds import Box, scene_bounds
-from converter.to_mitsuba.meshes.quadrics import View
+from converter.to_mitsuba.meshes.quadrics import View, most_triangles
 
 MOST_TRIANGLES = 1 << 24
 """Of all spheres together, where they are meshes."""
@@ -76,7 +76,8 @@ class Meshing:
         """Whence meshes are seen that are as fine as the picture needs."""
         camera, rows = self.scene.camera, self.settings.height * math.isqrt(self.settings.samples)
         pixel = 2 * math.tan(math.radians(camera.fovy) / 2) / rows
-        return View(camera.eye, math.dist(camera.eye, camera.look_at) / NEAR, pixel)
+        most = most_triangles(self.settings.width * self.settings.height * self.settings.samples)
+        return View(camera.eye, math.dist(camera.eye, camera.look_at) / NEAR, pixel, most)
 
     @cached_property
     def unit_ball(self) -> SphereMesh | None:

@@ -1,6 +1,5 @@
 """Csgs whose operands nearly coincide, are nearly of one size, or are deep in one another."""
 
-import math
 from collections.abc import Sequence
 from functools import reduce
 from operator import xor
@@ -8,7 +7,7 @@ from operator import xor
 import numpy as np
 
 from converter.scene.model import Checker, Csg, Operand, Polyhedron, Shape, Sphere, Vector
-from converter.studies.families.closed_forms import Long, checkered, directions, dot, long, unit
+from converter.studies.families.closed_forms import Long, checkered, directions, dot, long
 from converter.studies.families.scenes import (
     ALONG,
     ASIDE,
@@ -70,7 +69,7 @@ def _glass_shell(wall: float) -> Case:
     the inner one, or what they turn by if they are reflected there.
     """
     n, outer, inner = np.longdouble(1.5), np.longdouble(1.0), np.longdouble(1.0 - wall)
-    eye, pattern = (0.5, 0.75, 5.0), Checker((0.9, 0.8, 0.7), (0.2, 0.3, 0.4), 0.4375)
+    eye, pattern = (0.5, 0.75, 5.0), Checker((0.9, 0.8, 0.7), (0.2, 0.3, 0.4), 0.875)
     view = camera(eye, CENTER, 30.0)
     d = directions(view, _SETTINGS)
     f = long(eye) - long(CENTER)
@@ -118,7 +117,8 @@ def _flush(gap: float) -> Case:
     pit = _block((5.5, -0.75, -0.1875), (7.0 + 7 * gap, -0.125, 0.1875))
     cave = _block((5.5, 0.125, -0.1875), (7.0 - 7 * gap, 0.75, 0.1875))
     bodies = [block, pit, cave]
-    return _drawn(_minus(*bodies), bodies, _without, on_slope(20.0, -1.0, 0.5), on_slope(6.5), on_slope(21.0, 0.5, 0.75))
+    eye, lamp = on_slope(20.0, -1.0, 0.5), on_slope(21.0, 0.5, 0.75)
+    return _drawn(_minus(*bodies), bodies, _without, eye, on_slope(6.5), lamp)
 
 
 def _crescents(off: float) -> Case:
@@ -136,7 +136,7 @@ def _crescents(off: float) -> Case:
         return np.asarray((masks[0] & ~masks[1]) | (masks[2] & ~masks[3]))
 
     shape = Csg((Operand("+", _minus(*bodies[:2])), Operand("+", _minus(*bodies[2:]))))
-    return _drawn(shape, bodies, inside, (1.5, 3.5, 6.0), (0.0, 0.0, 0.0), (1.5, 3.5, 6.0))
+    return _drawn(shape, bodies, inside, (1.5, 3.5, 6.0), (0.0, 0.0, 0.0), (6.0, 3.0, 3.0))
 
 
 # ---- Deep nesting

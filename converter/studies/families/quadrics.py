@@ -26,8 +26,8 @@ def _edge(off: float) -> Case:
     view = camera((0.0, 1.0, distance), (0.0, 1.0, 0.0), math.degrees(2 * math.atan(off / distance)))
     x, u, z = np.moveaxis(directions(view, _SETTINGS), -1, 0)
     slope = 2 * b * u + distance * (e * x + f * u)
-    squares = slope * slope / 4 - c * distance**2 * (a * x * x + b * u * u + d * x * u)
-    hit = 2 * b * c * distance * u * z + squares > 0
+    across = slope * slope / 4 - c * distance**2 * (a * x * x + b * u * u + d * x * u)
+    hit = 2 * b * c * distance * u * z + across > 0
     made = scene(view, [(body, WHITE, GLOW)])
     return Case(made, _SETTINGS, two_colors(hit, WHITE, BLACK))
 
@@ -47,7 +47,8 @@ def _needle(width: float) -> Case:
     b = dot(bends * o, d)
     t = dot(bends * o, o) / (np.sqrt(np.maximum(rest, 0)) - b)
     n = unit(bends * (o + t[..., None] * d))
-    made = scene(view, [(Quadric((1.0, 1.0, -float(w2), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0)), WHITE, MATTE)], [light(eye)])
+    cone = Quadric((1.0, 1.0, -float(w2), 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0))
+    made = scene(view, [(cone, WHITE, MATTE)], [light(eye)])
     return Case(made, _SETTINGS, _headlit((rest > 0) & (t > 0), n, d))
 
 
@@ -56,9 +57,7 @@ def _nearly_parabolic(bend: float) -> Case:
     eye = (0.75, 2.0, 6.0)
     view = camera(eye, (0.0, -0.75, 0.0), 40.0)
     d = directions(view, _SETTINGS)
-    bodies = [
-        Quadric((1.0, side * bend, 1.0, 0.0, 0.0, 0.0, side * 2.5, 1.0, 0.0, 1.5625)) for side in (1.0, -1.0)
-    ]
+    bodies = [Quadric((1.0, side * bend, 1.0, 0.0, 0.0, 0.0, side * 2.5, 1.0, 0.0, 1.5625)) for side in (1.0, -1.0)]
     nearest = np.full(d.shape[:2], np.inf, dtype=np.longdouble)
     normal = np.zeros_like(d)
     for body in bodies:

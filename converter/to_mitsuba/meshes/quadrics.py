@@ -29,7 +29,9 @@ Triangles = NDArray[np.int64]
 OFF = 1 / 32
 """How much of a pixel the middle of an edge may be off the surface."""
 MOST_TRIANGLES = 1 << 20
-"""Of one mesh, about: what asks for more stays coarser."""
+"""Of one mesh, about."""
+LEAST_TRIANGLES, TRIANGLES_A_PIXEL = 1 << 14, 16
+"""Small pictures do with fewer, whatever their lens asks for."""
 AROUND, STEP = 16, 0.5
 """Coarse meshes: corners around an axis, and steps along hyperbolas, in units of their hyperbolic angle."""
 WIDEST = 64
@@ -54,12 +56,19 @@ class View(NamedTuple):
         eye: where the camera is.
         near: no surface has to be finer than one at this distance.
         pixel: the angle of a pixel.
+        most: triangles of one mesh, about; what asks for more stays coarser.
 
     """
 
     eye: Vector
     near: float
     pixel: float
+    most: int = MOST_TRIANGLES
+
+
+def most_triangles(pixels: int) -> int:
+    """Of one mesh, for a picture of so many pixels."""
+    return min(max(TRIANGLES_A_PIXEL * pixels, LEAST_TRIANGLES), MOST_TRIANGLES)
 
 
 @dataclass(frozen=True, eq=False)
@@ -356,7 +365,7 @@ def _refined(frame: Frame, mesh: _Mesh, view: View, bounds: Box | None = None) -
     points, triangles, surface = mesh
     finished: list[Triangles] = []
     flags: list[NDArray[np.bool_]] = []
-    while len(triangles) and sum(map(len, finished)) + len(triangles) < MOST_TRIANGLES:
+    while len(triangles) and sum(map(len, finished)) + len(triangles) < view.most:
         pairs = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
         keys, owner = np.unique(pairs[:, 0] * len(points) + pairs[:, 1], return_inverse=True)
         ends = points[np.column_stack([keys // len(points), keys % len(points)])]
