@@ -7,7 +7,10 @@ import numpy as np
 
 from converter.analysis.regions.region import Finding, Region, worst
 from converter.analysis.regions.situation import Floats, Situation
+from converter.scene.model import Csg, Polyhedron, Shape, Sphere
+from converter.shapes.csg_program import written_leaves
 from converter.shapes.table import shape_kind
+from converter.to_mitsuba.meshes.quadrics import most_triangles
 
 _NOISE = 2.0**-48
 """What a computed distance may be off, as a share of coordinates."""
@@ -50,6 +53,9 @@ def _pixel_shares(s: Situation, polyhedra_only: bool = False) -> Floats:
     own = endless[s.planes.object]
     np.maximum.at(distance, s.planes.object[own], seen[own])
     np.maximum.at(coordinate, s.planes.object[own], np.abs(s.planes.offset[own]))
+    for i in np.flatnonzero(endless & (distance == 0)).tolist():  # a quadric, or a csg
+        shape = s.scene.objects[i].shape
+        distance[i] = shape_kind(shape).distances(shape, s.needs.facts[i], s.scene.camera.eye).nearest
     shares = _pixel(s) * distance / (np.maximum(coordinate, s.reach) + distance)
     balls = bodies.object[bodies.is_ball]
     shares[balls] = np.inf if polyhedra_only else shares[balls]
@@ -70,6 +76,31 @@ def _too_long(s: Situation, shares: Floats, limit: float) -> Iterator[Finding]:
         text = f"on object {i}, seen through a lens of {s.scene.camera.fovy:.3g} degrees, a pixel is {shares[i]:.2g}"
         text += f" of the coordinates (less than {limit:.2g}{more})"
         yield Finding(s.scene.objects[i].line, text)
+
+
+def _fine_meshes(s: Situation, limit: float) -> Iterator[Finding]:
+    """Curved bodies that are meshes, and larger than as many pixels as their triangles can be made for."""
+    settings = s.settings
+    most = most_triangles(settings.width * settings.height * settings.samples)
+    bodies, curved = s.bodies, np.array([_is_curved(o.shape) for o in s.scene.objects], dtype=np.bool_)
+    shares = np.full(len(s.scene.objects), np.inf)
+    distance = np.maximum(np.linalg.norm(bodies.center - s.eye, axis=1) - bodies.radius, 0)
+    shares[bodies.object] = most * _pixel(s) * np.maximum(distance, bodies.radius) / bodies.radius
+    for i, more in worst(np.where(curved, shares, np.inf), limit):
+        text = f"object {i}, seen through a lens of {s.scene.camera.fovy:.3g} degrees, is larger than its mesh is fine"
+        size = most / shares[i]
+        yield Finding(s.scene.objects[i].line, f"{text}: {size:.2g} pixels (more than {most / limit:.2g}{more})")
+
+
+def _long_lens_at_quadrics(s: Situation, limit: float) -> Iterator[Finding]:
+    curved = np.array([_is_curved(o.shape) for o in s.scene.objects], dtype=np.bool_)
+    yield from _too_long(s, np.where(curved, _pixel_shares(s), np.inf), limit)
+
+
+def _is_curved(shape: Shape) -> bool:
+    """Whether it has a curved surface, and is no ball."""
+    leaves = written_leaves(shape) if isinstance(shape, Csg) else iter([shape])
+    return not isinstance(shape, Sphere) and not all(isinstance(leaf, Polyhedron) for leaf in leaves)
 
 
 def _long_lens_at_mirrors(s: Situation, limit: float) -> Iterator[Finding]:
@@ -143,11 +174,17 @@ def _lies_on(s: Situation, index: int) -> bool:
 
 
 REGIONS = (
-    Region(("grazing", "threads", "fovy"), {"double": 3e-15, "float": 5e-8, "offset": 5e-8, "ulp": 5e-8}, _long_lens),
+    Region(
+        ("grazing", "threads", "fovy", "quadric-edge", "needles"),
+        {"double": 3e-15, "float": 5e-8, "offset": 5e-8, "ulp": 5e-8},
+        _long_lens,
+    ),
     Region(("threads", "mirror-corner"), {"mesh": 5e-8}, _long_lens_at_edges),
     Region(
         ("mirror-corner", "critical-angle", "grazing-glass"), {"double": 3e-14, "float": 2e-6}, _long_lens_at_mirrors
     ),
+    Region(("quadric-edge", "needles"), {"float": 1e-6}, _long_lens_at_quadrics),
+    Region(("quadric-edge",), dict.fromkeys(("mesh", "offset", "ulp"), 4.0), _fine_meshes),
     Region(("horizon",), {"mesh": 1e-3}, _horizon),
     Region(("fovy",), {"float": 3e-3, "mesh": 3e-3}, _wide_lens),
     Region(("tie-along",), {"double": 1e-10}, _short_view),
