@@ -193,7 +193,7 @@ FAMILIES: tuple[Family, ...] = (
         "onions",
         "Halves of balls in one another, each less all that is in it: ever more csgs are inside of one another.",
         "balls",
-        (1.0, 2.0, 4.0, 8.0, 16.0, 31.0),
+        (1.0, 4.0, 12.0, 32.0),
         _onion,
     ),
 )

@@ -68,6 +68,7 @@ def _through_planes(planes: Sequence[Plane], origin: Long, d: Long) -> Passage:
     return Passage(np.where(misses, np.inf, enter), np.where(misses, np.inf, leave), entered, left)
 
 
+@np.errstate(invalid="ignore")  # distances are infinite where there is nothing
 def first_surface(passages: Sequence[Passage], inside: Inside, start: Long | float = 0.0) -> tuple[Long, Long]:
     """Where rays first come to be inside of a csg, or outside: (...) distances above `start`, infinite for none, and
     (..., 3) unit normals of the surface there, of either sign.
