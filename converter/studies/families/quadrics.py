@@ -94,7 +94,7 @@ FAMILIES: tuple[Family, ...] = (
         "quadric-edge",
         "Rays that pass the edge of an oblique ellipsoid at less and less distance on either side: half of them hit.",
         "distance of the outermost rays from the edge",
-        DECADES[1:],
+        tuple(10.0**-power for power in (1, 2, 3, 4, 6, 8, 10, 12, 13, 14)),
         _edge,
     ),
     Family(

@@ -30,7 +30,7 @@ OFF = 1 / 32
 """How much of a pixel the middle of an edge may be off the surface."""
 MOST_TRIANGLES = 1 << 20
 """Of one mesh, about."""
-LEAST_TRIANGLES, TRIANGLES_A_PIXEL = 1 << 14, 16
+LEAST_TRIANGLES, TRIANGLES_A_PIXEL = 1 << 13, 8
 """Small pictures do with fewer, whatever their lens asks for."""
 AROUND, STEP = 16, 0.5
 """Coarse meshes: corners around an axis, and steps along hyperbolas, in units of their hyperbolic angle."""
