@@ -27,6 +27,7 @@ from converter.studies.families.solids import Inside, Masks, lit_solid
 from converter.studies.family import Case, Family
 
 _SETTINGS = settings()
+Body = Sphere | Polyhedron
 CENTER: Vector = (0.125, -0.0625, 0.1875)
 _HAIRS = tuple(10.0**-power for power in (*range(1, 9), 10, 12, 13, 14))
 """1e-1 to 1e-14; a little less, and by the rule of roundings there is no difference at all."""
@@ -41,9 +42,7 @@ def _without(masks: Sequence[Masks]) -> Masks:
     return masks[0] & ~reduce(np.logical_or, masks[1:])
 
 
-def _drawn(
-    shape: Csg, bodies: Sequence[Sphere | Polyhedron], inside: Inside, eye: Vector, look_at: Vector, lamp: Vector
-) -> Case:
+def _drawn(shape: Csg, bodies: Sequence[Body], inside: Inside, eye: Vector, look_at: Vector, lamp: Vector) -> Case:
     """A white matte csg before black, with its picture in long double."""
     view = camera(eye, look_at, 40.0, NORMAL)
     truth = lit_solid(bodies, inside, eye, directions(view, _SETTINGS), lamp, MATTE)
@@ -56,7 +55,7 @@ def _drawn(
 def _bowl(wall: float) -> Case:
     """A ball without a smaller one and without what is above a slanting plane; light falls into it from above."""
     x, y, z = CENTER
-    bodies = [Sphere(CENTER, 1.0), Sphere(CENTER, 1.0 - wall), Polyhedron(((-2.0, -3.0, -6.0, 0.5),))]
+    bodies: list[Body] = [Sphere(CENTER, 1.0), Sphere(CENTER, 1.0 - wall), Polyhedron(((-2.0, -3.0, -6.0, 0.5),))]
     eye, lamp = (x + 2.0, y + 3.0, z + 1.5), (x + 3.0, y + 1.0, z + 4.0)
     return _drawn(_minus(*bodies), bodies, _without, eye, CENTER, lamp)
 

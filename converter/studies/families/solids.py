@@ -16,7 +16,7 @@ from converter.studies.family import Truth
 Masks = NDArray[np.bool_]
 Inside = Callable[[Sequence[Masks]], Masks]
 """Of a csg, from of which bodies points are inside."""
-START = np.longdouble(1e-12)
+START = 1e-12
 """Up to this distance a ray has not left the surface that it starts on."""
 
 
@@ -69,7 +69,7 @@ def _through_planes(planes: Sequence[Plane], origin: Long, d: Long) -> Passage:
 
 
 @np.errstate(invalid="ignore")  # distances are infinite where there is nothing
-def first_surface(passages: Sequence[Passage], inside: Inside, start: Long | float = 0.0) -> tuple[Long, Long]:
+def first_surface(passages: Sequence[Passage], inside: Inside, start: float = 0.0) -> tuple[Long, Long]:
     """Where rays first come to be inside of a csg, or outside: (...) distances above `start`, infinite for none, and
     (..., 3) unit normals of the surface there, of either sign.
     """

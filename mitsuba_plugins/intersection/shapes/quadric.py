@@ -9,8 +9,8 @@ the largest number of Q is about 1. That makes four rows:
     Qxy, Qxz, Qyz, and e1
     g, and e0
 
-The quadric may be off by e0 + e1 r + e2 r^2 + |q| . |Q| |q|, in units of the distance from 1 to the next double, where no
-coordinate of q is larger than r. The last term is the rounding of q . Q q, which is tiny along a needle's axis.
+The quadric may be off by e0 + e1 r + e2 r^2 + |q| . |Q| |q|, in units of the distance from 1 to the next double, where
+no coordinate of q is larger than r. The last term is the rounding of q . Q q, which is tiny along a needle's axis.
 
 Sigg, Weyrich, Botsch and Gross, GPU-Based Ray-Casting of Quadratic Surfaces, Symposium on Point-Based Graphics, 2006.
 Haines, Gunther and Akenine-Moller, Precision Improvements for Ray/Sphere Intersection, Ray Tracing Gems ch. 7, have the
