@@ -11,7 +11,7 @@ from converter.scene.settings import Settings
 from converter.shapes import quadric as kind
 from converter.shapes.quadric_frame import frame_of
 from converter.to_mitsuba.bounds import Box
-from converter.to_mitsuba.meshes.mesh import PolyhedronError
+from converter.to_mitsuba.meshes.mesh import MeshError
 from converter.to_mitsuba.meshes.quadrics import COARSER, FAR, OFF, View, quadric_mesh, quadric_solid
 from converter.to_mitsuba.surfaces import shapes
 
@@ -143,7 +143,7 @@ def test_what_is_out_of_sight_has_triangles_nevertheless():
 
 @pytest.mark.parametrize("numbers", [(1e-90, 1e-90, 0, 0, 0, 0, 0, 0, 0, -1), (1, 1, 1, 0, 0, 0, 1e60, 0, 0, 0)])
 def test_what_single_precision_does_not_hold_is_told(numbers):
-    with pytest.raises(PolyhedronError, match="object 3: single precision"):
+    with pytest.raises(MeshError, match="object 3: single precision"):
         quadric_mesh(quadric(numbers), BOUNDS, VIEW, "object 3")
 
 

@@ -30,7 +30,7 @@ def shapes(
     With a tolerance, spheres are meshes, their triangles off by no more than that share of the radius.
 
     Raises:
-        PolyhedronError: a polyhedron cannot be made into a mesh.
+        MeshError: a shape cannot be made a mesh.
         ValueError: the tolerance asks for too many triangles.
 
     """

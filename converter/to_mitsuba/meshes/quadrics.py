@@ -18,7 +18,7 @@ from converter.scene.model import Quadric, Vector
 from converter.shapes.quadric_frame import Frame, frame_of
 from converter.to_mitsuba.bounds import LARGEST, Box
 from converter.to_mitsuba.meshes.body import SMALLEST
-from converter.to_mitsuba.meshes.mesh import PolyhedronError
+from converter.to_mitsuba.meshes.mesh import MeshError
 
 if TYPE_CHECKING:
     import trimesh
@@ -126,7 +126,7 @@ def quadric_mesh(shape: Quadric, bounds: Box, view: View, name: str = "quadric")
         name: what messages call it.
 
     Raises:
-        PolyhedronError: float32 numbers do not hold it.
+        MeshError: float32 numbers do not hold it.
 
     """
     frame = frame_of(shape)
@@ -134,7 +134,7 @@ def quadric_mesh(shape: Quadric, bounds: Box, view: View, name: str = "quadric")
     triangles = triangles[surface]
     size = float(np.abs(frame.origin + points @ frame.axes.T).max(initial=0.0))
     if not SMALLEST < size < LARGEST:  # of NaN, too
-        raise PolyhedronError(f"{name}: single precision, of which meshes are, has no numbers for a size of {size:.3g}")
+        raise MeshError(f"{name}: single precision, of which meshes are, has no numbers for a size of {size:.3g}")
     inside = _in_box(frame, points, triangles, bounds)
     triangles = triangles[inside] if inside.any() else triangles
     points, triangles, _ = _refined(frame, _Mesh(points, triangles, np.full(len(triangles), True)), view, bounds)
