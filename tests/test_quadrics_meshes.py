@@ -12,7 +12,16 @@ from converter.shapes import quadric as kind
 from converter.shapes.quadric_frame import frame_of
 from converter.to_mitsuba.bounds import Box
 from converter.to_mitsuba.meshes.mesh import MeshError
-from converter.to_mitsuba.meshes.quadrics import COARSER, FAR, OFF, View, quadric_mesh, quadric_solid
+from converter.to_mitsuba.meshes.quadrics import (
+    COARSER,
+    FAR,
+    MOST_TRIANGLES,
+    OFF,
+    View,
+    most_triangles,
+    quadric_mesh,
+    quadric_solid,
+)
 from converter.to_mitsuba.surfaces import shapes
 
 TURNED = {
@@ -156,3 +165,12 @@ def test_shapes_of_a_scene_have_the_pictures_fineness():
         counts.append(len(elements["object_0"]["mesh"].triangles))
         assert told["object_0"]["deviation"] < 10 / height
     assert counts[0] < counts[1] < counts[2] < 40 * counts[0]
+
+
+def test_small_pictures_have_small_meshes():
+    """Through a lens for which a million triangles are too few."""
+    shape = quadric((1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0))
+    few, more = (len(mesh_of(shape, view=View((0.0, 0.0, 4.0), 1.0, 1e-9, most)).triangles) for most in (1000, 8000))
+    assert 1000 <= few <= 4000
+    assert 8000 <= more <= 32000
+    assert most_triangles(48 * 36) < most_triangles(320 * 240) < most_triangles(800 * 600) == MOST_TRIANGLES
