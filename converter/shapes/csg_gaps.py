@@ -22,8 +22,7 @@ ALIKE = 0.01
 whose normals' angle the cosine differs from 1 by more."""
 ROOM = 1e-6
 """Boxes that are no farther apart, next to their size, may touch."""
-_THIRD = 1 / 3
-_PROBES = tuple((2 * x * _THIRD, y * _THIRD, 2 * z * _THIRD) for x in (1, -1) for y in (1, -1) for z in (1, -1))
+_PROBES = tuple((2 * x / 3, y / 3, 2 * z / 3) for x in (1, -1) for y in (1, -1) for z in (1, -1))
 """Directions in which two bodies are compared, of length 1."""
 
 
