@@ -14,6 +14,7 @@ from converter.renderers.methods import METHODS
 from converter.scene.model import Checker, Csg, Finish, Operand, Polyhedron, Quadric, Texmap
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
+from converter.shapes import quadric
 from converter.studies.families import FAMILIES, ties
 from converter.studies.families.scenes import (
     GLASS,
@@ -263,12 +264,13 @@ def test_faces_of_operands_in_one_plane_that_are_apart_are_not_nearly_one():
 
 
 def test_quadrics_are_compared_all_around():
-    """A paraboloid that is nearly another is told of; not one that nestles to it along a circle only."""
-    bowl, lower = ((1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, j) for j in (0.0, -1e-8))
-    ring = (1.0, 2.0, 1.0, 0.0, 0.0, 0.0, 0.0, -5.0, 0.0, 2.0)  # touches the first at y = 1
-    for other, told in ((lower, 1), (ring, 0)):
-        made = less(Quadric(bowl), Quadric(other))
-        assert len(warnings(scene(VIEW, [(made, WHITE, MATTE)]), "native-float")) == told
+    """A paraboloid that is nearly another is told of; not a cylinder that crosses it nearly where they are compared."""
+    bowl, lower = (Quadric((1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, j)) for j in (0.0, -1e-8))
+    inside, direction = np.array(quadric.facts([bowl])[0].inside), np.array((2, 1, 2)) / 3
+    x, _, z = (inside + quadric.intersections(bowl, inside, direction)[-1].t * direction).tolist()
+    crossing = Quadric((1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(x * x + z * z) * (1 + 1e-9)))
+    for other, told in ((lower, 1), (crossing, 0)):
+        assert len(warnings(scene(VIEW, [(less(bowl, other), WHITE, MATTE)]), "native-float")) == told
 
 
 def test_a_light_beside_a_face_is_not_low_above_it():
