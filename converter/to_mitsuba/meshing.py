@@ -12,7 +12,7 @@ from converter.scene.settings import Settings
 from converter.shapes.table import shape_kind
 from converter.to_mitsuba.bounds import Box, scene_bounds
 from converter.to_mitsuba.fineness import USUAL, Fineness
-from converter.to_mitsuba.meshes.quadrics import View
+from converter.to_mitsuba.meshes.quadrics import View, most_triangles
 
 MOST_TRIANGLES = 1 << 24
 """Of all spheres together, where they are meshes."""
@@ -78,7 +78,8 @@ class Meshing:
         camera, rows = self.scene.camera, self.settings.height * math.isqrt(self.settings.samples)
         pixel = 2 * math.tan(math.radians(camera.fovy) / 2) / rows
         near = math.dist(camera.eye, camera.look_at) / NEAR
-        return View(camera.eye, near, pixel * self.fineness.pixels / USUAL.pixels)
+        most = most_triangles(self.settings.width * self.settings.height * self.settings.samples)
+        return View(camera.eye, near, pixel * self.fineness.pixels / USUAL.pixels, most)
 
     @cached_property
     def unit_ball(self) -> SphereMesh | None:

@@ -31,7 +31,7 @@ def scene_description(
 
     Raises:
         TextureError: a texture that is used cannot be read.
-        PolyhedronError, ValueError: as `shapes` has it.
+        MeshError, ValueError: as `shapes` has it.
 
     """
     scene = with_planes_shared(simplified(scene))

@@ -29,7 +29,7 @@ def shapes(
     """Every object as a shape, by its name, and what `geometry` has to tell of the meshes among them.
 
     Raises:
-        PolyhedronError: a polyhedron cannot be made into a mesh.
+        MeshError: a shape cannot be made a mesh.
         ValueError: the tolerance asks for too many triangles.
 
     """
