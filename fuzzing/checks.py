@@ -22,7 +22,7 @@ from converter.scene.model import Scene
 from converter.scene.needs import scene_needs
 from converter.scene.parser import parse_scene
 from converter.scene.settings import Settings
-from converter.to_mitsuba.meshes import PolyhedronError
+from converter.to_mitsuba.meshes import MeshError
 from converter.to_mitsuba.scene import scene_description
 from converter.to_povray.scene import povray_scene
 
@@ -65,7 +65,7 @@ def convert(scene: Scene) -> None:
     scene_notices(scene, SETTINGS)
     cutoff_bound(scene, SETTINGS)
     scene_description(scene, SETTINGS, with_shapes=False)
-    with suppress(PolyhedronError):
+    with suppress(MeshError):
         scene_description(scene, SETTINGS)
     with suppress(ExportError):
         povray_scene(scene, SETTINGS)

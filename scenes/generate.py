@@ -256,7 +256,15 @@ def room() -> bytes:
     return ppm([color(column, row) for column in range(width)] for row in range(height))
 
 
+def letter() -> bytes:
+    """An F, which shows how a texture lies: turned, mirrored or with rows for columns it is another picture."""
+    paper, ink = (250 / 255, 240 / 255, 200 / 255), (200 / 255, 40 / 255, 40 / 255)
+    rows = ("......", ".####.", ".#....", ".#....", ".###..", ".#....", ".#....", "......")
+    return ppm([ink if mark == "#" else paper for mark in row] for row in rows)
+
+
 TEXTURES: dict[str, Callable[[], bytes]] = {
+    "ladder/letter.ppm": letter,
     "rainbow1.ppm": rainbow1,
     "textures/azulejo.ppm": azulejo,
     "textures/room.ppm": room,

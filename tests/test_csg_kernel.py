@@ -95,12 +95,12 @@ def test_csg_through_the_tree_of_boxes(monkeypatch, name):
     assert np.array_equal(one, other)
 
 
-@pytest.mark.parametrize("name", ["De Morgan", "half-spaces", "a - b beside it"])
+@pytest.mark.parametrize("name", ["De Morgan", "half-spaces", "a - b beside it", "complement", "back to front"])
 def test_crossings_in_order_are_those_against_every_leaf(monkeypatch, name):
-    from mitsuba_plugins.intersection import solids
+    from mitsuba_plugins.intersection import geometry
 
     unrolled = draw(monkeypatch, SAME[name][1], True)
-    monkeypatch.setattr(solids, "MOST_UNROLLED", 0)
+    monkeypatch.setattr(geometry, "MOST_UNROLLED", 0)
     assert np.array_equal(draw(monkeypatch, SAME[name][1], True), unrolled)
 
 

@@ -9,6 +9,7 @@ from pathlib import Path
 
 from converter.commands.exits import OK, UNAVAILABLE
 from converter.commands.options import Parser
+from converter.commands.serve import INSTALL, missing
 from converter.commands.tables import print_table
 
 PACKAGES = ("mitsuba", "drjit", "numpy", "OpenImageIO", "trimesh", "manifold3d", "flip-evaluator", "rich", "matplotlib")
@@ -54,6 +55,7 @@ def _packages() -> Iterator[tuple[str, str]]:
 def _findings() -> tuple[list[tuple[str, str]], list[str], bool]:
     """What was found, what to do about it, and whether both renderers work."""
     from converter.commands.doctor_probe import try_native
+    from converter.grade.sandbox import find_walls
     from converter.renderers.native import available_cores
     from mitsuba_plugins.backend import MINIMUM_LLVM, VARIANTS, find_llvm
     from mitsuba_plugins.trial import cuda_device, remember_cuda, try_variant
@@ -90,6 +92,9 @@ def _findings() -> tuple[list[tuple[str, str]], list[str], bool]:
     if library is None or blames_llvm:
         advice.append(_llvm_advice(MINIMUM_LLVM, library is not None and library.by_user))
     rows.append(("kernel cache", _kernel_cache()))
+    walls = find_walls()
+    rows.append(("walls for grade", walls.bubblewrap or f"none: {walls.why_not}"))
+    rows.append(("page", f"needs {INSTALL}" if missing() else "whitted serve can show it"))
     return rows, advice, native.works and bool(working)
 
 

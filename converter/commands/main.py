@@ -8,6 +8,8 @@ COMMANDS = {
     "convert": "write a scene as files that Mitsuba 3 or POV-Ray loads",
     "compare": "draw a scene by two methods, or take two images, and tell the differences",
     "why": "name the mistakes that lead from a scene to a picture",
+    "grade": "run programs of students on scenes, and name their mistakes",
+    "serve": "open a page for writing a scene beside its picture",
     "inspect": "say what a scene file holds and what it needs",
     "pixel": "show the rays behind one pixel, by two methods",
     "methods": "list the methods, and when to use each",

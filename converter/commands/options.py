@@ -130,10 +130,10 @@ def size(text: str) -> tuple[int, int]:
 # ------------------------------------------------------------------------------------------------------------- groups
 
 
-def add_size(parser: argparse.ArgumentParser) -> None:
-    """WIDTH and HEIGHT, at the end of the line."""
-    parser.add_argument("width", nargs="?", type=pixels, metavar="WIDTH", help="columns of the picture (800)")
-    parser.add_argument("height", nargs="?", type=pixels, metavar="HEIGHT", help="rows of the picture (600)")
+def add_size(parser: argparse.ArgumentParser, width: int = DEFAULTS.width, height: int = DEFAULTS.height) -> None:
+    """WIDTH and HEIGHT, at the end of the line; the help tells what they are where they are not given."""
+    parser.add_argument("width", nargs="?", type=pixels, metavar="WIDTH", help=f"columns of the picture ({width})")
+    parser.add_argument("height", nargs="?", type=pixels, metavar="HEIGHT", help=f"rows of the picture ({height})")
 
 
 def add_reading_options(parser: argparse.ArgumentParser, picture: bool = True, bounces: bool = True) -> None:

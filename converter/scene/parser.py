@@ -1,7 +1,8 @@
 """Reads course scenes.
 
-    parse_scene(text)   text -> Scene, without a look at any file
-    load_scene(path)    file -> Scene, whose textures are there and whose shapes exist
+    parse_scene(text)        text -> Scene, without a look at any file
+    load_scene(path)         file -> Scene, whose textures are there and whose shapes exist
+    load_text(text, path)    the same for a text that may once stand in that file
 
 Reading is first by words (`sections`), as the format says, and again by lines (`lines`) where that fails, to tell why.
 """
@@ -16,7 +17,7 @@ from pathlib import Path
 from typing import Any, TypeVar
 
 from converter.scene import entries
-from converter.scene.errors import Problem, SceneError, place
+from converter.scene.errors import Problem, SceneError, place, shown
 from converter.scene.fields import Lost
 from converter.scene.geometry import check_geometry
 from converter.scene.lines import has_lines, read_camera_by_lines, read_section_by_lines
@@ -43,7 +44,7 @@ def parse_scene(text: str | bytes, file: Path | None = None) -> Scene:
     Raises:
         SceneError: the text is no scene; says everything that is wrong with it.
     """
-    scene, reader = _read_text(Words(decode(text, file), file))
+    scene, reader = read_words(Words(decode(text, file), file))
     return _checked(scene, reader, [])
 
 
@@ -58,8 +59,23 @@ def load_scene(path: str | Path) -> Scene:
         data = _read_bytes(file)
     except OSError as error:
         raise SceneError([Problem(file, 0, 0, _why_unreadable(error))]) from error
-    scene, reader = _read_text(Words(decode(data, file), file))
-    scene = _find_textures(scene, reader)
+    return _loaded(Words(decode(data, file), file))
+
+
+def load_text(text: str, file: Path) -> Scene:
+    """The scene that `text` is, as `load_scene` would read it from `file`, but for textures outside the file's folder.
+
+    These are refused and not looked at: the text need not come from whoever may read those files.
+
+    Raises:
+        SceneError: the text is no such scene; says everything that is wrong with it.
+    """
+    return _loaded(Words(decode(text, file), file), confined=True)
+
+
+def _loaded(text: Words, confined: bool = False) -> Scene:
+    scene, reader = read_words(text)
+    scene = _find_textures(scene, reader, confined)
     problems: list[Problem] = []
     if scene:
         with _uncollected():
@@ -84,16 +100,16 @@ def _read_bytes(file: Path) -> bytes:
     return b"".join(blocks)
 
 
-def _read_text(text: Words) -> tuple[Scene | None, Reader]:
-    """The scene, if nothing is wrong, and the reader, which has noted what is wrong otherwise."""
-    reader = Reader(text)
+def read_words(text: Words, start: Callable[[Words], Reader] = Reader) -> tuple[Scene | None, Reader]:
+    """The scene, if nothing is wrong, and the reader, which has noted what is wrong otherwise; `start` makes it."""
+    reader = start(text)
     if not text.has(0):
         reader.complain(0, "the scene is empty")
         return None, reader
     with _uncollected():
         scene = _read_scene(reader, in_lines=False)
         if reader.misread and text.size < LONGEST_BY_LINES and has_lines(reader):
-            reader = Reader(text)
+            reader = start(text)
             _read_scene(reader, in_lines=True)
     return scene, reader
 
@@ -219,8 +235,9 @@ def _starts_well(reader: Reader, at: int, section: Section | None) -> bool:
     return whole(line[0]) is not None and section.opens(line[1:]) and not section.opens(line)
 
 
-def _find_textures(scene: Scene | None, reader: Reader) -> Scene | None:
-    """The scene with every texture's file as it can be opened: beside the scene, else in the working folder.
+def _find_textures(scene: Scene | None, reader: Reader, confined: bool) -> Scene | None:
+    """The scene with every texture's file as it can be opened: beside the scene, else in the working folder, unless
+    `confined` to the scene's.
 
     Complains of each that cannot be opened; of one that is missing, and that no object uses, it warns.
     """
@@ -239,7 +256,10 @@ def _find_textures(scene: Scene | None, reader: Reader) -> Scene | None:
             continue  # the name is what is missing
         file = reader.folder / name
         where = place(reader.text.file, reader.text.line(at))
-        if not os.access(file, os.F_OK) and os.access(name, os.F_OK):
+        if confined and not _lies_in(file, reader.folder):
+            reader.complain(at, f"texture {shown(name)} lies outside of the scene's folder, and is not read here")
+            continue
+        if not confined and not os.access(file, os.F_OK) and os.access(name, os.F_OK):
             elsewhere[k] = file = Path(name)
             reader.notes.append(f"{where}: texture {name} is not beside the scene, but read from the working folder")
         try:
@@ -263,6 +283,14 @@ def _find_textures(scene: Scene | None, reader: Reader) -> Scene | None:
         assert isinstance(pigment, Texmap)
         pigments[k] = replace(pigment, file=file)
     return replace(scene, pigments=tuple(pigments))
+
+
+def _lies_in(file: Path, folder: Path) -> bool:
+    """Whether a file lies in a folder or below it, wherever links lead."""
+    try:
+        return file.resolve().is_relative_to(folder.resolve())
+    except (OSError, RuntimeError):  # links that lead to themselves
+        return False
 
 
 def _checked(scene: Scene | None, reader: Reader, more: list[Problem]) -> Scene:

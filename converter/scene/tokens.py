@@ -6,7 +6,7 @@ little more room than its text, however many words and lines it has, and what is
 
 import re
 from bisect import bisect_right
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from itertools import accumulate, chain
 from math import isfinite, nan
 from pathlib import Path
@@ -26,6 +26,7 @@ LONG_LINE = 64
 END_OF_FILE = "\x1a"
 """Ctrl-Z, which DOS editors leave at the end of a text."""
 _BLANK = re.compile(r"\s")
+_WORD = re.compile(r"\S+")
 _COMMENT = re.compile(r"#(?!(?<=1\.#)(?:INF|IND|QNAN|SNAN)).*")
 _COMMENTS = ("//", "/*", ";", "%", "<!--")
 COMMENT_HINT = ": a comment starts with '#'"
@@ -194,6 +195,12 @@ class Words:
         if self._commented and _COMMENT.search(text, max(begin, text.rfind("\n", begin, blank.start())), blank.start()):
             return text.find("\n", blank.start()) + 1 or len(text)
         return blank.end()
+
+
+def word_spans(text: str) -> Iterator[tuple[int, int]]:
+    """Where each word of a text begins and ends, in the order of their addresses in `Words`."""
+    uncommented = _COMMENT.sub(lambda comment: " " * len(comment[0]), text)
+    return (word.span() for word in _WORD.finditer(uncommented))
 
 
 def decode(text: str | bytes, file: Path | None) -> str:

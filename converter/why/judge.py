@@ -55,8 +55,14 @@ class Judged:
         return self.found.right and not self.acne and not self.blank.any()
 
 
-def judge(scene: Scene, theirs: Theirs, settings: Settings) -> Judged:
+def judge(scene: Scene, theirs: Theirs, settings: Settings, timed: bool = True) -> Judged:
     """Look for what explains a picture of `scene`; the picture's size counts, not that of `settings`.
+
+    Args:
+        scene: it.
+        theirs: the picture.
+        settings: how the scene is read.
+        timed: look at fewer pixels where they take long; else the same answer comes out on every machine.
 
     Raises:
         RendererUnavailable: the native tracer or the student's is not built.
@@ -71,15 +77,15 @@ def judge(scene: Scene, theirs: Theirs, settings: Settings) -> Judged:
     reference = to_levels(colors.reshape(-1, 3)).reshape(colors.shape)
     blank = blank_rows(theirs.levels, reference)
     if theirs.lossy:
-        found = find_causes(student, theirs.levels, reference, COMPRESSED, blank)
+        found = find_causes(student, theirs.levels, reference, COMPRESSED, blank, timed)
         return Judged(scene, settings, theirs, reference, student, found, blank, acne=False)
-    found = find_causes(student, theirs.levels, reference, EXACT, blank)
+    found = find_causes(student, theirs.levels, reference, EXACT, blank, timed)
     if blank.any() and found.causes and _draws_rows(student, theirs.levels, found, blank):
         blank = np.zeros_like(blank)
-        found = find_causes(student, theirs.levels, reference, EXACT, blank)
+        found = find_causes(student, theirs.levels, reference, EXACT, blank, timed)
     acne = not blank.any() and has_acne(student, theirs.levels, frozenset(found.causes), EXACT)
     if not acne and _unexplained(found) and found.before.mean() >= _SHARE:
-        roughly = find_causes(student, theirs.levels, reference, COMPRESSED, blank)
+        roughly = find_causes(student, theirs.levels, reference, COMPRESSED, blank, timed)
         if _looks_compressed(student, theirs.levels, roughly):
             found = roughly
     return Judged(scene, settings, theirs, reference, student, found, blank, acne)

@@ -37,6 +37,8 @@ _EFFECT = 80
 _MOST_CAUSES = 5
 _FEW, _FEW_OF_SMALL = 0.001, 0.05
 """Share of the pixels that may be wrong in a picture that is right, as for `compare`; and in a small one."""
+_EQUALS, _EQUAL = 6, 0.01
+"""Sets that are told apart by more pixels, at most, and how much their losses may differ."""
 _BEAM = 8
 """Pairs of which triples are made."""
 
@@ -85,7 +87,12 @@ class Found:
 
 
 def find_causes(
-    student: Student, theirs: Picture, reference: Picture, likeness: Likeness, blank: Mask | None = None
+    student: Student,
+    theirs: Picture,
+    reference: Picture,
+    likeness: Likeness,
+    blank: Mask | None = None,
+    timed: bool = True,
 ) -> Found:
     """The deviations that lead from the scene to `theirs`, as far as they can be found.
 
@@ -95,12 +102,13 @@ def find_causes(
         reference: the right one, of the same size.
         likeness: when pixels count as the same.
         blank: (height,) rows that are not looked at.
+        timed: look at fewer pixels where they take long; else the same answer comes out on every machine.
 
     """
     judged = likeness.judged(student.width, student.height)
     if blank is not None:
         judged[_with_whole_squares(blank) if likeness.lossy else blank] = False
-    return _Search(student, theirs, reference, likeness, judged).run()
+    return _Search(student, theirs, reference, likeness, judged, timed).run()
 
 
 def _with_whole_squares(rows: Mask) -> Mask:
@@ -111,9 +119,11 @@ def _with_whole_squares(rows: Mask) -> Mask:
 
 
 class _Search:
-    def __init__(self, student: Student, theirs: Picture, reference: Picture, likeness: Likeness, judged: Mask) -> None:
+    def __init__(
+        self, student: Student, theirs: Picture, reference: Picture, likeness: Likeness, judged: Mask, timed: bool
+    ) -> None:
         self.student, self.theirs, self.likeness = student, theirs, likeness
-        self.trials = Trials(student, likeness)
+        self.trials = Trials(student, likeness, timed)
         self.judged = judged
         places = _places(self.judged)
         xs, ys = places.T
@@ -140,6 +150,7 @@ class _Search:
 
     def _best_of_few(self, sample: Sample) -> Causes:
         singles = self.trials.race(sample, [NOTHING, *(frozenset((d.name,)) for d in self.candidates)])
+        singles = self._with_best_first(singles)
         if self._is_right(singles[0][1]):
             return singles[0][1]
         few = sample.first(_EFFECT)
@@ -147,7 +158,7 @@ class _Search:
         effective = [d.name for d, wrong in zip(self.candidates, alone[1:], strict=True) if (wrong != alone[0]).any()]
         pairs = [frozenset(pair) for pair in combinations(effective, 2) if compatible(pair)]
         first = int(np.clip(_PAIR_SECONDS / self.trials.pixel_seconds / max(len(pairs), 1), *_PAIR_PIXELS))
-        best_pairs = self.trials.race(sample, pairs, first) if pairs else []
+        best_pairs = self._with_best_first(self.trials.race(sample, pairs, first)) if pairs else []
         best = min(singles[0], *best_pairs[:1], key=lambda pair: pair[0] + 0.01 * len(pair[1]))
         if self._is_right(best[1]):
             return best[1]
@@ -156,6 +167,16 @@ class _Search:
         ordered = sorted((t for t in triples if compatible(t)), key=sorted)
         best_triples = self.trials.race(sample, ordered, _PAIR_PIXELS[1]) if ordered else []
         return min(best, *best_triples[:1], key=lambda pair: pair[0] + 0.01 * len(pair[1]))[1]
+
+    def _with_best_first(self, ranked: list[tuple[float, Causes]]) -> list[tuple[float, Causes]]:
+        """Sets, best first, of which those that the sample cannot tell apart are told apart by the whole screen.
+
+        Few of the pixels that are right are in the sample, so that a set may spoil others unseen.
+        """
+        equal = [pair for pair in ranked[:_EQUALS] if pair[0] <= ranked[0][0] + _EQUAL]
+        if len(equal) > 1:
+            equal.sort(key=lambda pair: (len(pair[1]), int(self._wrong(pair[1]).sum())))
+        return equal + ranked[len(equal) :]
 
     # ---- Among the pixels that are left -----------------------------------------------------------------------------
 
@@ -205,7 +226,8 @@ class _Search:
             losses = self.trials.losses(part, sets)
             as_good = losses[1:] <= losses[0] * (1 + _AS_GOOD) + _AS_GOOD / 10
             others = [other for other, good in zip(others, as_good, strict=True) if good]
-        return tuple(others)
+        most = (1 + _AS_GOOD) * int(self._wrong(causes).sum()) + _AS_GOOD * int(self._wrong(NOTHING).sum())
+        return tuple(other for other in others if self._wrong(causes - {name} | {other}).sum() <= most)
 
     # ---- Roundings of colours ---------------------------------------------------------------------------------------
 

@@ -1,7 +1,8 @@
 """How much of a picture is drawn by one launch of the kernel.
 
-A launch has a fixed cost, some hundredths of a second in which Python records the kernel, and cannot be stopped. So it
-should take a good part of a second, and how many rays that are is found out while a picture is drawn.
+A launch has a fixed cost, some hundredths of a second in which Python records the kernel, or some tenths where a csg is
+large, and cannot be stopped. So it should take a good part of a second, and how many rays that are is found out while a
+picture is drawn.
 """
 
 import time
@@ -12,7 +13,7 @@ import drjit as dr
 import mitsuba as mi
 
 SECONDS = 0.5
-"""What a launch should take."""
+"""What a launch should take, or as long as recording it did, if that is more."""
 GROWTH = 8
 """A launch has no more rays than this times the one before, for the top of a picture may be nothing but sky."""
 LEAST = 1 << 16
@@ -38,6 +39,7 @@ class Pace:
         self._least = LEAST_BRANCHING if branching else int(share * LEAST)
         self._rays = LEAST_BRANCHING if branching else int(share * FIRST[on_gpu])
         self._most_pixels = MOST_PIXELS[on_gpu]
+        self._recorded = 0.0
 
     def rows(self, width: int) -> int:
         """Rows of the next band, of a picture of that width. They do not depend on the number of samples."""
@@ -49,8 +51,13 @@ class Pace:
 
     @contextmanager
     def launch(self, rays: int) -> Iterator[None]:
-        """Measure a launch of so many primary rays."""
+        """Measure a launch of so many primary rays, within which `recorded` is called before it is run."""
         started = time.perf_counter()
         yield
-        fitting = rays * SECONDS / max(time.perf_counter() - started, 1e-3)
+        recording, running = self._recorded - started, time.perf_counter() - self._recorded
+        fitting = rays * max(SECONDS, recording) / max(running, 1e-3)
         self._rays = int(min(max(min(fitting, self._rays * GROWTH), self._least), MOST))
+
+    def recorded(self) -> None:
+        """Note that from now on the launch runs."""
+        self._recorded = time.perf_counter()

@@ -397,6 +397,7 @@ class Whitted(mi.SamplingIntegrator):
                 count = min(len(offsets) - done, pace.samples(rows * width))
                 with pace.launch(rows * width * count):
                     color, too_deep = self._add_samples(sensor, color, too_deep, first, table, done, done + count)
+                    pace.recorded()
                     dr.eval(color, too_deep)
                     dr.sync_thread()
                 done += count

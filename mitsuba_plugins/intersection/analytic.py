@@ -11,11 +11,13 @@ import drjit as dr
 import mitsuba as mi
 
 from mitsuba_plugins.intersection.contacts import LightContacts
+from mitsuba_plugins.intersection.csg_search import SearchedCsg
 from mitsuba_plugins.intersection.geometry import Surface
 from mitsuba_plugins.intersection.passages import Crossing, crossing_if
-from mitsuba_plugins.intersection.primitives import ListedRows, Primitives
+from mitsuba_plugins.intersection.primitives import Primitives
 from mitsuba_plugins.intersection.rays import NOTHING, Ray, Real, largest
 from mitsuba_plugins.intersection.rounding import most_blur
+from mitsuba_plugins.intersection.rows import ListedRows
 from mitsuba_plugins.intersection.surfaces import ExactSurfaces
 
 
@@ -89,5 +91,11 @@ class AnalyticSurfaces(ExactSurfaces):
 
     def _intersect_rows(self, index: int, ray: Ray, reach: Any, which_piece: bool) -> Crossing:
         own = ray.object == index
-        rows = ListedRows(self.primitives.first[index], self._rows[index])
-        return self._solids[index].intersect(rows, ray, own, reach, False, which_piece)
+        solid, rows = self._solids[index], self._rows_of(index, ray)
+        return solid.intersect(rows, ray, own, reach, False, which_piece)
+
+    def _rows_of(self, index: int, ray: Ray) -> Any:
+        if isinstance(self._solids[index], SearchedCsg):
+            width = dr.width(ray.d)
+            return self.primitives.leaves_of(mi.UInt32(index), mi.Bool(True), width)
+        return ListedRows(self.primitives.first[index], self._rows[index])

@@ -13,11 +13,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from mitsuba_plugins.intersection.columns import column
+from mitsuba_plugins.intersection.csg import Csg
 from mitsuba_plugins.intersection.geometry import Surface
 from mitsuba_plugins.intersection.passages import Crossing
 from mitsuba_plugins.intersection.rays import INVERTED, UPRIGHT, Ray, Real
 from mitsuba_plugins.intersection.shapes.kind import ShapeKind, Vector
-from mitsuba_plugins.intersection.solids import Csg
 
 if TYPE_CHECKING:
     from collections.abc import Sequence

@@ -23,11 +23,17 @@ import math
 from dataclasses import dataclass
 from typing import Any
 
+from mitsuba_plugins.intersection.csg import Csg, Leaf, leaves_of
+from mitsuba_plugins.intersection.csg_search import SearchedCsg
+from mitsuba_plugins.intersection.csg_unrolled import UnrolledCsg
 from mitsuba_plugins.intersection.shapes.kind import Row, Shape, ShapeKind, Vector
 from mitsuba_plugins.intersection.shapes.table import SHAPE_KINDS
-from mitsuba_plugins.intersection.solids import Csg, Single, Solid, leaves_of
+from mitsuba_plugins.intersection.solids import Single, Solid
 
 Box = tuple[Vector, Vector]
+
+MOST_UNROLLED = 8
+"""Leaves up to which each has code of its own: faster, but it grows with the square of their number."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -93,10 +99,15 @@ def _surface(name: str, entry: dict[str, Any]) -> Surface:
     box = shapes[0][1].box
     if "csg" in entry:
         program, box = tuple(map(int, entry["csg"]["program"])), entry.get("box")
-        solid = Csg(leaves_of(shapes), program)
+        solid = _csg(program, leaves_of(shapes))
     room = _roomy(*box) if box is not None else None
     triangles, deviation = tuple(entry.get("triangles", ())), entry.get("deviation", 0.0)
     return Surface(name, entry["material"], solid, tuple(shapes), room, triangles, deviation)
+
+
+def _csg(program: tuple[int, ...], leaves: tuple[Leaf, ...]) -> Csg:
+    few = len(leaves) <= MOST_UNROLLED
+    return UnrolledCsg(program, leaves) if few else SearchedCsg(program, leaves)
 
 
 def _shape(name: str, entry: dict[str, Any]) -> tuple[ShapeKind, Shape]:

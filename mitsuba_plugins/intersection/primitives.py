@@ -7,12 +7,16 @@ import drjit as dr
 import mitsuba as mi
 
 from mitsuba_plugins.intersection.columns import column
+from mitsuba_plugins.intersection.csg import Csg
+from mitsuba_plugins.intersection.csg_search import SearchedCsg
 from mitsuba_plugins.intersection.geometry import Surface
+from mitsuba_plugins.intersection.leaf_table import GatheredLeaves, LeafTable
 from mitsuba_plugins.intersection.passages import Crossing, crossing_if, first_crossing
 from mitsuba_plugins.intersection.rays import UPRIGHT, Ray, Real
+from mitsuba_plugins.intersection.rows import GatheredRows
 from mitsuba_plugins.intersection.shapes.kind import ShapeKind, SurfacePoint
 from mitsuba_plugins.intersection.shapes.table import SHAPE_KINDS
-from mitsuba_plugins.intersection.solids import Csg, Single, Solid
+from mitsuba_plugins.intersection.solids import Single, Solid
 
 
 class Primitives:
@@ -39,12 +43,19 @@ class Primitives:
         self._solid = column(mi.UInt32, [self._solids.index(surface.solid) for surface in surfaces])
         self._first = column(mi.UInt32, self.first)
         self._count = column(mi.UInt32, [len(surface.rows) for surface in surfaces])
+        any_searched = any(isinstance(solid, SearchedCsg) for solid in self._solids)
+        self._leaves = LeafTable(types, surfaces, self.first) if any_searched else None
         self.object_count = mi.UInt32(len(surfaces))
         dr.make_opaque(self.object_count)
 
     def row(self, primitive: Any, active: Any) -> Any:
         """The four numbers of a row (Vector4), by its index."""
         return dr.gather(self.types.Vector4, self._rows, primitive, active)
+
+    def leaves_of(self, index: Any, active: Any, width: int) -> GatheredLeaves:
+        """The leaves of large csgs, by the indices of their objects."""
+        assert self._leaves is not None
+        return GatheredLeaves(self._leaves, self.row, index, active, width)
 
     def intersect(
         self, ray: Ray, index: Any, active: Any, reach: Any, which_piece: bool = True, by_rules: bool = False
@@ -56,7 +67,10 @@ class Primitives:
 
         def intersect(solid: Solid, active: Any) -> Crossing:
             count = dr.gather(mi.UInt32, self._count, index, active)
-            rows = GatheredRows(self, first, count, active, width)
+            if isinstance(solid, SearchedCsg):
+                rows: Any = self.leaves_of(index, active, width)
+            else:
+                rows = GatheredRows(self.row, first, count, active, width)
             asked = rows, ray, own, reach, by_rules, which_piece
             if isinstance(solid, Csg):  # worth a branch
                 return crossing_if(active, ray, width, lambda: solid.intersect(*asked))
@@ -79,7 +93,7 @@ class Primitives:
         own = ray.object == index
 
         def intersect(kind: ShapeKind, active: Any) -> Crossing:
-            rows = GatheredRows(self, primitive, mi.UInt32(1), active, dr.width(ray.d, index))
+            rows = GatheredRows(self.row, primitive, mi.UInt32(1), active, dr.width(ray.d, index))
             return first_crossing(kind.passage(rows, ray, own, reach), ray, own, reach)
 
         return _by_kind(self._kinds, self._kind, primitive, active, intersect)
@@ -91,7 +105,7 @@ class Primitives:
         first = self.row(row, active)  # in one gather for all kinds
 
         def surface_at(kind: ShapeKind, active: Any) -> SurfacePoint:
-            rows = GatheredRows(self, row, mi.UInt32(1), active, dr.width(ray.d, index), first)
+            rows = GatheredRows(self.row, row, mi.UInt32(1), active, dr.width(ray.d, index), first)
             return kind.surface_at(rows, p, ray, own, reach)
 
         result: SurfacePoint = _by_kind(self._kinds, self._kind, row, active, surface_at)
@@ -111,61 +125,3 @@ def _by_kind(kinds: list[Any], column: Any, index: Any, active: Any, answer: Cal
         found = answer(kind, active & chosen)
         result = found if result is None else dr.select(chosen, found, result)
     return result
-
-
-class GatheredRows:
-    """The rows of primitives from `first` on, `count` of them, that differ from ray to ray; see `Rows`."""
-
-    def __init__(
-        self, primitives: Primitives, first: Any, count: Any, active: Any, width: int, first_row: Any = None
-    ) -> None:
-        self._first_row = first_row
-        self._primitives = primitives
-        self._first = first
-        self._count = count
-        self._active = active
-        self.width = width
-
-    def primitive(self, k: int = 0) -> Any:
-        """The index of the row k after the first."""
-        return self._first + k if k else self._first
-
-    def row(self, k: int = 0) -> Any:
-        """The row k after the first."""
-        if k == 0 and self._first_row is not None:
-            return self._first_row
-        return self._primitives.row(self._first + k, self._active)
-
-    @dr.syntax
-    def fold(self, step: Callable[[Any, Any, Any], Any], state: Any) -> Any:
-        """A loop."""
-        primitive = mi.UInt32(self._first) + dr.zeros(mi.UInt32, self.width)
-        end = self._first + self._count
-        while self._active & (primitive < end):
-            state = step(state, primitive, self._primitives.row(primitive, self._active))
-            primitive += 1
-        return state
-
-
-class ListedRows:
-    """Rows that are arguments of the kernel (Vector4), the same for all rays, the first with index `first`."""
-
-    width = 1
-
-    def __init__(self, first: int, rows: list[Any]) -> None:
-        self._first = first
-        self._rows = rows
-
-    def primitive(self, k: int = 0) -> Any:
-        """The index of the row k after the first."""
-        return mi.UInt32(self._first + k)
-
-    def row(self, k: int = 0) -> Any:
-        """The row k after the first."""
-        return self._rows[k]
-
-    def fold(self, step: Callable[[Any, Any, Any], Any], state: Any) -> Any:
-        """Code for each of them."""
-        for primitive, row in enumerate(self._rows, self._first):
-            state = step(state, mi.UInt32(primitive), row)
-        return state

@@ -117,3 +117,8 @@ class ShapeKind(Protocol):
     def surface_at(self, rows: Rows, p: Any, ray: Ray, own: Any, reach: Any) -> SurfacePoint:
         """The point of a primitive nearest to a point near it (Point3) that a ray has met."""
         ...
+
+
+def passage_of(kind: ShapeKind, rows: Rows, ray: Ray, own: Any, reach: Any, by_rules: bool) -> Passage:
+    """Where rays cross a shape: by the rules for ties, or saying which are close to one."""
+    return (kind.passage_by_rules if by_rules else kind.passage)(rows, ray, own, reach)

@@ -1,0 +1,1 @@
+"""`whitted grade`: strangers' programs run within limits, their pictures judged, a report of it."""
