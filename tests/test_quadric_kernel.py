@@ -82,7 +82,7 @@ class Kernel:
     def __init__(self, mi, numbers, o, d) -> None:
         import drjit as dr
 
-        from mitsuba_plugins.intersection.primitives import ListedRows
+        from mitsuba_plugins.intersection.rows import ListedRows
         from mitsuba_plugins.intersection.rays import real, start_ray
         from mitsuba_plugins.intersection.shapes import quadric
 
