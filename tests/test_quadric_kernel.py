@@ -82,8 +82,8 @@ class Kernel:
     def __init__(self, mi, numbers, o, d) -> None:
         import drjit as dr
 
-        from mitsuba_plugins.intersection.rows import ListedRows
         from mitsuba_plugins.intersection.rays import real, start_ray
+        from mitsuba_plugins.intersection.rows import ListedRows
         from mitsuba_plugins.intersection.shapes import quadric
 
         self.kind, self.types = quadric, real("double")
