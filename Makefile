@@ -30,7 +30,7 @@ render: .venv/.installed
 	$(BIN)/whitted compare $(SCENE) $(WIDTH) $(HEIGHT) || [ $$? -eq 1 ]
 
 test: .venv/.installed
-	$(BIN)/python -m pytest
+	$(BIN)/python -m pytest -n logical --dist worksteal
 
 check: .venv/.checkers
 	$(BIN)/ruff check .

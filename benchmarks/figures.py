@@ -62,8 +62,8 @@ def main() -> None:
 
 
 def agreement() -> None:
-    """Each scene at 800 x 600: Mitsuba's methods against native double, and their times."""
-    renderers = {
+    """Each scene at 800 x 600: Mitsuba's methods against native double, their times, and POV-Ray's, its trace time."""
+    renderers: dict[str, Renderer] = {
         "default": MitsubaRenderer(),
         "mesh": MitsubaRenderer(intersections="mesh"),
         "ulp": MitsubaRenderer(intersections="ulp"),
@@ -75,9 +75,10 @@ def agreement() -> None:
     print(
         f"medians of {FEW_RUNS} runs in turn: Mitsuba's default method, Embree with exact surfaces, Embree alone with"
     )
-    print("Waechter and Binder's offset, and with Mitsuba's own")
+    print("Waechter and Binder's offset, and with Mitsuba's own; POV-Ray's trace time, and that over native's")
     heads = "".join(f"{name:>10}" for name in renderers)
-    print(f"{'':<18}{heads}{'native s':>12}{heads}  default is")
+    print(f"{'':<18}{heads}{'native s':>12}{heads}{'POV-Ray':>10}{'over':>8}  default is")
+    others = {"POV-Ray": PovrayRenderer()} if shutil.which("povray") else {}
     for file in sorted((ROOT / "scenes").glob("*.in")):
         scene, settings = load_scene(file), Settings()
         native = NativeRenderer()
@@ -85,11 +86,13 @@ def agreement() -> None:
         pictures = {name: renderer.render(scene, settings) for name, renderer in renderers.items()}
         wrong = [compare_pixels(truth, np.asarray(picture.pixels)).disagreeing for picture in pictures.values()]
         times = _interleaved(
-            {name: _seconds(renderer, file) for name, renderer in {"native": native, **renderers}.items()}, FEW_RUNS
+            {name: _seconds(each, file) for name, each in {"native": native, **renderers, **others}.items()}, FEW_RUNS
         )
-        medians = [statistics.median(values) for values in times.values()]
+        medians = {name: statistics.median(values) for name, values in times.items()}
+        povray = medians.pop("POV-Ray", math.nan)
         counts = "".join(f"{count:>10}" for count in wrong)
-        seconds = f"{medians[0]:>12.3f}" + "".join(f"{median:>10.3f}" for median in medians[1:])
+        seconds = f"{medians['native']:>12.3f}" + "".join(f"{medians[name]:>10.3f}" for name in renderers)
+        seconds += f"{povray:>10.3f}{povray / medians['native']:>8.1f}"
         print(f"{file.name:<18}{counts}{seconds}  {pictures['default'].statistics['intersections']}", flush=True)
 
 

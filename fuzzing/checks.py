@@ -23,7 +23,7 @@ from converter.scene.model import Scene
 from converter.scene.needs import scene_needs
 from converter.scene.parser import parse_scene
 from converter.scene.settings import Settings
-from converter.to_mitsuba.meshes import PolyhedronError
+from converter.to_mitsuba.meshes import MeshError
 from converter.to_mitsuba.scene import scene_description
 from converter.to_povray.scene import povray_scene
 
@@ -67,7 +67,7 @@ def convert(scene: Scene) -> None:
     cutoff_bound(scene, SETTINGS)
     with suppress(EffectUnavailable):
         scene_description(scene, SETTINGS, with_shapes=False)
-    with suppress(EffectUnavailable, PolyhedronError):
+    with suppress(EffectUnavailable, MeshError):
         scene_description(scene, SETTINGS)
     with suppress(ExportError):
         povray_scene(scene, SETTINGS)

@@ -33,7 +33,7 @@ from converter.scene.model import Sphere
 from converter.scene.parser import MOST_PROBLEMS, load_scene, parse_scene
 from converter.scene.settings import Settings
 from converter.to_mitsuba.export import export_scene
-from converter.to_mitsuba.meshes import PolyhedronError
+from converter.to_mitsuba.meshes import MeshError
 from converter.to_povray.export import export_povray
 
 CORPUS = Path(__file__).parent / "corpus"
@@ -226,7 +226,7 @@ def test_an_odd_scene_is_inspected_and_converted(file: Path, tmp_path: Path) -> 
     folder, pov = tmp_path / "folder", tmp_path / "scene.pov"
     try:
         assert (folder / "scene.xml") in export_scene(scene, SETTINGS, folder)
-    except PolyhedronError as error:  # a mesh of single precision has its limits
+    except MeshError as error:  # a mesh of single precision has its limits
         assert str(error).startswith("object ")
         assert not folder.exists()
     try:

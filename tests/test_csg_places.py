@@ -194,6 +194,7 @@ def test_reaching_into_half_spaces():
     assert not kind.reaches(ring, [(1.0, 0.0, 0.0, 1.5)])
     assert not kind.reaches(csg("+", BALL, "&", half_space(1, 0, 0, 0)), [(-1.0, 0.0, 0.0, 0.5)])
     assert kind.reaches(csg("+", BALL, "+", half_space(1, 0, 0, 3)), [(1.0, 0.0, 0.0, 7.0)])
+    assert kind.reaches(csg("+", BALL, "&", half_space(1, 0, 0, 0), "+", FAR), [(-1.0, 0.0, 0.0, 4.5)])
 
 
 @EVERY

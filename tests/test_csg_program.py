@@ -74,6 +74,8 @@ def _without(shape, path):
     [
         (csg("+", BALL, "-", FAR), {(1,)}),
         (csg("+", BALL, "+", BALL), {(0,), (1,)}),
+        (csg("+", BALL, "-", Sphere((2.0, 0.0, 0.0), 1.0)), {(1,)}),  # they touch
+        (csg("+", BALL, "+", Sphere((0.5, 0.0, 0.0), 0.5)), {(1,)}),
         (csg("+", CUBE, "&", BALL), set()),
         (csg("+", CUBE, "+", Sphere((0.0, 0.0, 0.0), 0.5)), {(1,)}),
         (csg("+", BALL, "-", csg("+", RIGHT, "-", FAR)), {(1, 1)}),

@@ -58,6 +58,7 @@ def test_what_is_read_is_written():
     ("objects", "line", "column", "message"),
     [
         (f"0 0 csg 2\n- {LEAF}\n+ {SMALL}", 14, 1, "the first operand of a csg must have '+', found '-'"),
+        (f"0 0 csg 1\n& {LEAF}", 14, 1, "the first operand of a csg must have '+', found '&'"),
         ("0 0 csg 0", 13, 9, "the csg's number of operands must be a whole number from 1 on, found '0'"),
         ("0 0 csg -1", 13, 9, "the csg's number of operands must be a whole number from 1 on, found '-1'"),
         ("0 0 csg", 13, 8, "expected the csg's number of operands, found the end of the file"),
@@ -92,6 +93,12 @@ def test_what_is_read_is_written():
         (
             "0 0 csg 65\n" + f"+ {LEAF}\n" * 65,
             78,
+            7,
+            "a csg may have 64 spheres, polyhedra and quadrics at most, found more",
+        ),
+        (
+            "0 0 csg 2\n" + "".join(f"{sign} 0 0 csg 40\n" + f"+ {LEAF}\n" * 40 for sign in "+-"),
+            80,
             7,
             "a csg may have 64 spheres, polyhedra and quadrics at most, found more",
         ),

@@ -15,6 +15,7 @@ from converter.renderers.native import NativeRenderer
 from converter.scene.model import Checker, Polyhedron, Scene, Sphere, Texmap
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
+from converter.to_mitsuba.fineness import Fineness
 
 ROOT = Path(__file__).parent.parent
 SETTINGS = Settings(width=160, height=120)
@@ -89,7 +90,7 @@ def test_large_scenes(mi, tmp_path, kind, size):
         ({"intersections": "bvh", "precision": "float"}, 0.005),
         ({"intersections": "ulp"}, 0.02),
         ({"intersections": "offset"}, 0.05),
-        ({"intersections": "offset", "sphere_tolerance": 0.001}, 0.05),
+        ({"intersections": "offset", "fineness": Fineness(spheres=0.001)}, 0.05),
     ],
     ids=str,
 )

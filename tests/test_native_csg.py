@@ -224,6 +224,10 @@ A, B, C = 0, 1, 2
 PAIRS = {
     "a csg of one": (csg([BALL], A), lambda s, p, f: s.add_sphere(p, f, BALL[1][:3], BALL[1][3])),
     "a box of half-spaces": (csg(half_spaces(BOX), *all_of(6)), lambda s, p, f: s.add_polyhedron(p, f, BOX[1])),
+    "a box without a half-space": (
+        csg([BOX, ("polyhedron", [(1, 2, 0, 0.5)])], A, B, SUBTRACT),
+        lambda s, p, f: s.add_polyhedron(p, f, [*BOX[1], (-1, -2, 0, -0.5)]),
+    ),
     "A - A": (csg([BALL, BALL], A, B, SUBTRACT), lambda s, p, f: None),
     "A - A, a box": (csg([BOX, BOX], A, B, SUBTRACT), lambda s, p, f: None),
     "A - A, a cone": (csg([CONE, CONE], A, B, SUBTRACT), lambda s, p, f: None),
@@ -353,6 +357,41 @@ def test_boxes_lose_no_hit(precision):
             )
 
     assert pixels(add, precision=precision, search="brute") == pixels(add, precision=precision, search="bvh")
+
+
+@pytest.mark.parametrize("leaf", ["cylinder", "parallel planes", "crossing planes"])
+def test_a_ray_along_a_leaf_meets_what_cuts_that_off(leaf):
+    """It crosses the leaf nowhere, and is inside of it, or of its complement, all the way."""
+    eyes = [(0.25, 0.5, 7), (2, 0.5, 7)]
+    inside = [contains([("quadric", KINDS[leaf])], [0], eye) for eye in eyes]
+    for sign, hits in ((1, inside), (-1, [not hit for hit in inside])):
+        quadric = ("quadric", tuple(sign * number for number in KINDS[leaf]))
+        scene = scene_of([quadric, ("polyhedron", [(0, 0, 1, -1)])], [A, B, INTERSECT])
+        for eye, hit in zip(eyes, hits, strict=True):
+            ray = trace_ray(scene, eye, (0, 0, -1))
+            assert (ray["hit"] and ray["hit"]["t"]) == (6 if hit else None)
+
+
+def test_a_ray_leaves_what_is_thinner_than_the_error_of_its_start():
+    """From so far that it comes to be inside of the ball for less than the first hit may be off."""
+    ball, other = ("sphere", (0, 0, 0, 1)), ("sphere", (3, 0, 0, 1))
+    scene = scene_of([ball, other], [A, B, UNITE], kt=1, eta=1)
+    for k in range(1, 8):
+        ray = trace_ray(scene, (0, 1 - k * 2.0**-16, -8192), (0, 0, 1), precision="float", max_depth=3)
+        entered = []
+        while ray["children"]:
+            entered.append(ray["hit"]["entering"])
+            (ray,) = ray["children"]
+        assert entered == [True, False], k
+
+
+def test_the_first_leaf_is_met_at_an_edge():
+    """Where a ball is cut off by a plane, a ray meets both at once, but for roundings."""
+    for x, y in ((0.8, 0.0), (0.48, 0.64), (-0.64, 0.48), (-0.768, 0.224), (0.0, -0.8)):
+        ball, plane = ("sphere", (0, 0, 0, 1)), ("polyhedron", [(0, 0, 1, -0.6)])
+        for leaves, normal in (([ball, plane], (x, y, 0.6)), ([plane, ball], (0, 0, 1))):
+            ray = trace_ray(scene_of(leaves, [A, B, INTERSECT]), (2 * x, 2 * y, 1.4), (-x, -y, -0.8))
+            assert ray["hit"]["normal"] == pytest.approx(normal)
 
 
 # ---- Eyes and lights ------------------------------------------------------------------------------------------------

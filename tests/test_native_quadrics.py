@@ -223,6 +223,18 @@ def test_a_ray_that_leaves_one_sheet_meets_the_other():
     assert first["hit"]["entering"] and second["hit"]["entering"]
 
 
+def test_a_ray_that_is_mirrored_off_an_ellipsoid_never_meets_it():
+    """From so far that it grazes, but for rounding errors, which may lead the mirrored ray inside."""
+    scene = scene_of(KINDS["ellipsoid"], kr=1)
+    grazes = 0
+    for k in range(1, 1000):
+        eye = (1 - (1 + k % 3) * 2.0**-24, 0, -(2.0**16) * (1 + k / 1000))
+        first, second = chain(trace_ray(scene, eye, (0, 0, 1), precision="float", max_depth=1))
+        grazes += first["hit"]["normal"][2] > 0
+        assert second["hit"] is None, k
+    assert grazes > 4
+
+
 # ---- Where it is decided by rule -------------------------------------------------------------------------------------
 
 
@@ -258,10 +270,10 @@ def test_one_root_is_exact_where_there_is_only_one(precision):
 def test_a_ray_along_a_ruling_does_not_meet_the_surface_far_away(precision):
     """But for the roundings of its direction it runs along the straight lines in the cylinder, inside it for ever."""
     for kind, direction in (("parabolic cylinder", (1e-17, 1, 0.5)), ("cylinder", (1e-17, 0, 1))):
-        inside = trace_ray(scene_of(KINDS[kind]), (0.5, 0.75, 0.25), direction, precision=precision)
+        inside = trace_ray(scene_of(KINDS[kind]), (0, 0.75, 0.25), direction, precision=precision)
         assert inside["hit"] is None, kind
     glass = scene_of(KINDS["parabolic cylinder"], kt=1)
-    first, second = chain(trace_ray(glass, (0.5, -3, -1), (1e-17, 1, 0.5), precision=precision, max_depth=1))
+    first, second = chain(trace_ray(glass, (0, -3, -1), (1e-17, 1, 0.5), precision=precision, max_depth=1))
     assert first["hit"]
     assert second["hit"] is None
     across = trace_ray(scene_of(KINDS["parabolic cylinder"]), (0.5, 3, 0.25), (1, 0, 0), precision=precision)
@@ -327,7 +339,7 @@ def test_balls_are_spheres(precision):
 
 def museum(scale=1.0):
     """Quadrics of all kinds that reflect, refract and shade one another."""
-    rng = random.Random(5)
+    rng = random.Random(1)
     scene = new_scene(WHITE, (0.2, 0.3, 0.5))
     scene.set_camera((0, 3 * scale, 12 * scale), (0, 0, 0), (0, 1, 0), 45)
     scene.add_light((5 * scale, 8 * scale, 6 * scale), WHITE, CONSTANT)
@@ -347,6 +359,7 @@ def museum(scale=1.0):
 @pytest.mark.parametrize("precision", PRECISIONS)
 def test_boxes_lose_no_hit(precision):
     found = pixels(museum(), precision=precision, search="brute")
+    assert len(set(found)) > 1000
     assert found == pixels(museum(), precision=precision, search="bvh")
 
 

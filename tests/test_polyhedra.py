@@ -12,7 +12,7 @@ from hypothesis import strategies as st
 from converter.scene.model import Camera, Finish, Light, Object, Polyhedron, Scene, Solid, Sphere
 from converter.scene.settings import Settings
 from converter.to_mitsuba.bounds import Box, scene_bounds
-from converter.to_mitsuba.meshes import PolyhedronError, polyhedron_mesh, write_ply
+from converter.to_mitsuba.meshes import MeshError, polyhedron_mesh, write_ply
 from native_tracer.halfspaces import polyhedron_faces, polyhedron_facts
 
 BOX = Box((-100.0, -100.0, -100.0), (100.0, 100.0, 100.0))
@@ -299,7 +299,7 @@ def test_deviation_is_what_float32_makes_of_it():
 
 
 def test_no_volume():
-    with pytest.raises(PolyhedronError, match="object 7: planes 2 and 6 leave no volume"):
+    with pytest.raises(MeshError, match="object 7: planes 2 and 6 leave no volume"):
         polyhedron_mesh([*CUBE, (0, -1, 0, 3)], BOX, "object 7")
 
 

@@ -5,6 +5,7 @@ import shutil
 import signal
 import sys
 import threading
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -228,6 +229,15 @@ def test_tells_why_povray_failed(plain: Scene, monkeypatch: pytest.MonkeyPatch, 
         PovrayRenderer().render(plain, Settings(width=8, height=6))
 
 
+@pytest.fixture
+def heeded_interrupt() -> Iterator[None]:
+    """Ctrl-C raises KeyboardInterrupt, also in a process of pytest-xdist's, which ignores it."""
+    previous = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, previous)
+
+
+@pytest.mark.usefixtures("heeded_interrupt")
 def test_interrupt_ends_povray(plain: Scene, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
     pid = tmp_path / "pid"
     sleeper = program(

@@ -23,6 +23,7 @@ QUADRICS = {
     "ellipsoid": (1, 2, 5, 0.5, 0.25, -0.5, 0, 0, 0, -1),
     "needle": (1, 1, 1e-6, 0, 0, 0, 0, 0, 0, -1),
     "plate": (1, 1, 1e8, 0, 0, 0, 0, 0, 0, -1),
+    "slanting plate": (5001, 5001, 1, 9998, 0, 0, 0, 0, 0, -1),
     "cylinder": (1, 1, 0, 0, 0, 0, 0, 0, 0, -1),
     "slanting cylinder": (5, 5, 2, -2, 4, 4, 0, 0, 0, -6),
     "cone": (1, 1, -1, 0, 0, 0, 0, 0, 0, 0),
@@ -81,8 +82,8 @@ class Kernel:
     def __init__(self, mi, numbers, o, d) -> None:
         import drjit as dr
 
-        from mitsuba_plugins.intersection.primitives import ListedRows
         from mitsuba_plugins.intersection.rays import real, start_ray
+        from mitsuba_plugins.intersection.rows import ListedRows
         from mitsuba_plugins.intersection.shapes import quadric
 
         self.kind, self.types = quadric, real("double")
@@ -187,6 +188,58 @@ def test_a_ray_along_a_cone_s_side_or_a_paraboloid_s_axis_meets_it_once(mi):
     paraboloid = Kernel(mi, QUADRICS["paraboloid"], o[1:], d[1:]).first_crossing()
     assert np.array_equal(np.array(paraboloid.t), [7.3125, 6.6875])
     assert np.array_equal(np.array(paraboloid.enters), [True, False])
+    hollow = Kernel(mi, [-x for x in QUADRICS["paraboloid"]], o[1:], d[1:]).first_crossing()
+    assert np.array_equal(np.array(hollow.t), [7.3125, 6.6875])
+    assert np.array_equal(np.array(hollow.enters), [False, True])
+
+
+def test_a_ray_leaves_a_hollow_body_where_it_enters_a_ball(mi):
+    o, d = np.array([[0.0, 0.0, -5.0], [0.0, 0.0, 0.0]]), np.array([[0.0, 0.0, 1.0]] * 2)
+    for name, enters in (("hollow", [False, True]), ("ball", [True, False])):
+        crossing = Kernel(mi, QUADRICS[name], o, d).first_crossing()
+        assert np.array(crossing.t).tolist() == [4, 1]
+        assert np.array(crossing.enters).tolist() == enters
+
+
+@pytest.mark.parametrize("sign", [1, -1])
+@pytest.mark.parametrize("name", ["cylinder", "parallel planes", "crossing planes", "parabolic cylinder"])
+def test_a_line_that_crosses_nothing_is_inside_or_outside_all_the_way(mi, name, sign):
+    o, d = np.array([[0.25, 0.5, -7.0], [2.0, 0.5, 3.0], [2.0, -0.5, 3.0]]), np.array([[0.0, 0.0, 1.0]] * 3)
+    numbers = [sign * x for x in QUADRICS[name]]
+    passage = Kernel(mi, numbers, o, d).passage()
+    inside = [polynomial(numbers, *ray)[2] <= 0 for ray in zip(o, d, strict=True)]
+    assert len(set(inside)) == 2
+    assert np.array(passage.inside_before).tolist() == inside
+    assert not np.isfinite([np.array(passage.near), np.array(passage.far)]).any()
+
+
+@every_quadric
+def test_points_near_a_surface_are_moved_onto_it(mi, numbers):
+    o, d = rays_near(np.zeros(3), 200)
+    kernel = Kernel(mi, numbers, o, d)
+    t = np.array(kernel.passage().near)
+    near = (np.abs(t) < 100) & (np.abs(t) > 0.1)
+    p = o[near] + t[near, None] * d[near] * (1 + 1e-8)
+    kernel = Kernel(mi, numbers, o[near], d[near])
+    ray = kernel.ray
+    found = kernel.kind.surface_at(kernel.rows, kernel.types.Point3(np.ascontiguousarray(p.T)), ray, kernel.own, 100.0)
+
+    def off(point):
+        """NaN where crossing planes cross."""
+        gradient = [float(polynomial(numbers, point, axis)[1]) for axis in np.eye(3)]
+        return abs(float(polynomial(numbers, point, (1, 0, 0))[2])) / np.linalg.norm(gradient)
+
+    before, after = (np.array([*map(off, points)]) for points in (p, np.array(found.p).T))
+    assert np.nanmedian(after) <= np.nanmedian(before) / 1000
+
+
+def test_a_complement_has_the_same_rows_but_for_signs():
+    """So that a surface is met at the same distance from both sides."""
+    from mitsuba_plugins.intersection.shapes import quadric
+
+    for numbers in np.random.default_rng(3).integers(-3, 4, size=(100, 10)).astype(float).tolist():
+        one, other = (quadric.read({"quadric": [sign * x for x in numbers]}).rows for sign in (1, -1))
+        assert [*quadric.turned(tuple(one))] == other
 
 
 @pytest.mark.parametrize("intersections", ["analytic", "bvh"])

@@ -11,8 +11,17 @@ from converter.scene.settings import Settings
 from converter.shapes import quadric as kind
 from converter.shapes.quadric_frame import frame_of
 from converter.to_mitsuba.bounds import Box
-from converter.to_mitsuba.meshes.mesh import PolyhedronError
-from converter.to_mitsuba.meshes.quadrics import COARSER, FAR, OFF, View, quadric_mesh, quadric_solid
+from converter.to_mitsuba.meshes.mesh import MeshError
+from converter.to_mitsuba.meshes.quadrics import (
+    COARSER,
+    FAR,
+    MOST_TRIANGLES,
+    OFF,
+    View,
+    most_triangles,
+    quadric_mesh,
+    quadric_solid,
+)
 from converter.to_mitsuba.surfaces import shapes
 
 TURNED = {
@@ -143,7 +152,7 @@ def test_what_is_out_of_sight_has_triangles_nevertheless():
 
 @pytest.mark.parametrize("numbers", [(1e-90, 1e-90, 0, 0, 0, 0, 0, 0, 0, -1), (1, 1, 1, 0, 0, 0, 1e60, 0, 0, 0)])
 def test_what_single_precision_does_not_hold_is_told(numbers):
-    with pytest.raises(PolyhedronError, match="object 3: single precision"):
+    with pytest.raises(MeshError, match="object 3: single precision"):
         quadric_mesh(quadric(numbers), BOUNDS, VIEW, "object 3")
 
 
@@ -156,3 +165,12 @@ def test_shapes_of_a_scene_have_the_pictures_fineness():
         counts.append(len(elements["object_0"]["mesh"].triangles))
         assert told["object_0"]["deviation"] < 10 / height
     assert counts[0] < counts[1] < counts[2] < 40 * counts[0]
+
+
+def test_small_pictures_have_small_meshes():
+    """Through a lens for which a million triangles are too few."""
+    shape = quadric((1.0, 2.0, 3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0))
+    few, more = (len(mesh_of(shape, view=View((0.0, 0.0, 4.0), 1.0, 1e-9, most)).triangles) for most in (1000, 8000))
+    assert 1000 <= few <= 4000
+    assert 8000 <= more <= 32000
+    assert most_triangles(48 * 36) < most_triangles(320 * 240) < most_triangles(800 * 600) == MOST_TRIANGLES

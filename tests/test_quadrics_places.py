@@ -70,6 +70,13 @@ def test_points_on_a_surface_are_told_by_their_decimals():
     assert not kind.lies_on(shape, (math.inf, 0.0, 0.0)) and not kind.contains(shape, (math.nan, 0.0, 0.0))
 
 
+def test_a_point_s_numbers_may_all_be_rounded_the_same_way():
+    """Each product then has the roundings of three."""
+    shape = quadric((1.13, 0, 0, 0, 0, 0, 0, 0, 0, -1.15043153))  # 1.13 1.009^2
+    assert kind.lies_on(shape, (1.009, 0.3, 0.7))
+    assert not kind.lies_on(shape, (1.009 + 2.0**-50, 0.3, 0.7))
+
+
 @pytest.mark.parametrize("factor", [1.0, 1e-9, 1e9])
 def test_those_that_lie_on_a_ball_lie_on_it_as_a_quadric(factor):
     ball = Sphere((0.1 * factor, 0.2 * factor, 0.3 * factor), 0.5 * factor)

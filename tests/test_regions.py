@@ -11,9 +11,10 @@ from variant import VARIANT
 from converter.analysis.regions.warnings import REGIONS, method_warnings, region_warnings
 from converter.commands.main import main
 from converter.renderers.methods import METHODS
-from converter.scene.model import Checker, Finish, Polyhedron, Texmap
+from converter.scene.model import Checker, Csg, Finish, Operand, Polyhedron, Quadric, Texmap
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
+from converter.shapes import quadric
 from converter.studies.families import FAMILIES, ties
 from converter.studies.families.scenes import (
     GLASS,
@@ -52,6 +53,10 @@ def two(first, second, finish=MATTE):
     return scene(VIEW, [(first, WHITE, finish), (second, WHITE, finish)])
 
 
+def less(first, second):
+    return Csg((Operand("+", first), Operand("-", second)))
+
+
 def tiled(shape, pigment):
     return scene(VIEW, [(shape, pigment, GLOW)])
 
@@ -61,6 +66,8 @@ SLIVER = Polyhedron(((-1e-7, 1.0, 0.0, -1e-7), (0.0, -1.0, 0.0, 0.0), (1.0, 0.0,
 SLIVER = Polyhedron((*SLIVER.planes, (0.0, 0.0, -1.0, -1.0)))
 CLOSE = sphere((0.0, 0.0, 0.0), 1.0 - 1e-7)
 MIRRORS = [(sphere((0.0, 0.0, z), r), WHITE, MIRROR) for z, r in ((0.0, 9.0), (-2.0, 1.0), (-5.0, 1.0))]
+CONE = Quadric((1.0, -1.0, 1.0, 0.0, 0.0, 0.0, 0.0, 2.0, 0.0, -1.0))
+EGG = Quadric((1.0, 2.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -1.0))
 ROOM = box((-5.0, -5.0, -5.0), (5.0, 5.0, 5.0))
 
 
@@ -149,6 +156,31 @@ ROOM = box((-5.0, -5.0, -5.0), (5.0, 5.0, 5.0))
             "object 0 is 1e+09 copies of its image from the origin",
         ),
         (
+            scene(VIEW, [(less(BALL[0], sphere((0.0, 0.0, 0.0), 1.0 - 1e-8)), WHITE, MATTE)]),
+            "native-float",
+            "surfaces of the leaves 0 and 1 of object 0, a csg, are 2.5e-09 of their coordinates apart",
+        ),
+        (
+            scene(VIEW, [(less(ROOM, box((-1.0, -1.0, -1.0), (1.0, 5.0 - 1e-6, 1.0))), WHITE, MATTE)]),
+            "native-float",
+            "surfaces of the leaves 0 and 1 of object 0, a csg, are 2e-07 of their coordinates apart (less than 5e-07)",
+        ),
+        (
+            scene(VIEW, [(less(BALL[0], sphere((0.0, 0.0, 0.0), 1.0 - 1e-3)), WHITE, GLASS)]),
+            "mitsuba-mesh",
+            "object 0, a csg, which is transparent, are 0.00025 of their coordinates apart (less than 0.001)",
+        ),
+        (
+            scene(camera((0.0, 0.0, 4.0), (0.0, 0.0, 0.0), 1e-3), [(CONE, WHITE, GLOW)]),
+            "native-float",
+            "on object 0, seen through a lens of 0.001 degrees, a pixel is",
+        ),
+        (
+            scene(camera((0.0, 0.0, 4.0), (0.0, 0.0, 0.0), 1e-4), [(EGG, WHITE, GLOW)]),
+            "mitsuba-mesh",
+            "object 0, seen through a lens of 0.0001 degrees, is larger than its mesh is fine",
+        ),
+        (
             scene(VIEW, [(BALL[0], WHITE, replace(GLASS, ior=1.0 - 1e-7))]),
             "native-float",
             "finish 0 has an index that differs from 1 by 1e-07",
@@ -206,6 +238,39 @@ def test_surfaces_that_do_not_meet_are_no_gap():
     left, right = box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0)), box((3.0, 0.0, 0.0), (4.0, 1.0 + 1e-9, 1.0))
     assert not warnings(two(left, right), "native-float")
     assert warnings(two(left, box((0.5, 0.0, 0.5), (4.0, 1.0 + 1e-9, 1.5))), "native-float")
+
+
+@pytest.mark.parametrize(
+    "other",
+    [
+        sphere((0.0, 0.0, 0.0), 1.0),  # the same
+        sphere((0.5, 0.0, 0.0), 0.5),  # touches it from within
+        sphere((0.0, 2.0, 0.0), 1.0),  # touches it from without
+        box((-1.0, -1.0, -1.0), (1.0, 1.0, 1.0)),
+        sphere((0.0, 0.0, 0.0), 0.99),
+    ],
+)
+def test_operands_that_touch_or_are_one_are_not_nearly_one(other):
+    for operation in ("+", "-", "&"):
+        made = Csg((Operand("+", BALL[0]), Operand(operation, other)))
+        assert not warnings(scene(VIEW, [(made, WHITE, GLASS)]), "native-float")
+
+
+def test_faces_of_operands_in_one_plane_that_are_apart_are_not_nearly_one():
+    low = box((0.0, 0.0, 0.0), (1.0, 1.0, 1.0))
+    for x, told in ((3.0, 0), (0.5, 1)):
+        made = Csg((Operand("+", low), Operand("+", box((x, 0.25, 0.25), (4.0, 1.0 + 1e-7, 0.75)))))
+        assert len(warnings(scene(VIEW, [(made, WHITE, MATTE)]), "native-float")) == told
+
+
+def test_quadrics_are_compared_all_around():
+    """A paraboloid that is nearly another is told of; not a cylinder that crosses it nearly where they are compared."""
+    bowl, lower = (Quadric((1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, -1.0, 0.0, j)) for j in (0.0, -1e-8))
+    inside, direction = np.array(quadric.facts([bowl])[0].inside), np.array((2, 1, 2)) / 3
+    x, _, z = (inside + quadric.intersections(bowl, inside, direction)[-1].t * direction).tolist()
+    crossing = Quadric((1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -(x * x + z * z) * (1 + 1e-9)))
+    for other, told in ((lower, 1), (crossing, 0)):
+        assert len(warnings(scene(VIEW, [(less(bowl, other), WHITE, MATTE)]), "native-float")) == told
 
 
 def test_a_light_beside_a_face_is_not_low_above_it():

@@ -48,7 +48,9 @@ def test_most_of_the_time_goes_into_rays(clock, size, nanoseconds, branching):
                 count = min(samples - done, pace.samples(rows * width))
                 with pace.launch(rows * width * count):
                     started = clock.now
-                    clock.now += FIXED + rows * width * count * nanoseconds * 1e-9
+                    clock.now += FIXED
+                    pace.recorded()
+                    clock.now += rows * width * count * nanoseconds * 1e-9
                 longest = max(longest, clock.now - started)
                 launches += 1
                 done += count
@@ -57,6 +59,21 @@ def test_most_of_the_time_goes_into_rays(clock, size, nanoseconds, branching):
         beginning = 10 + width * height // MOST_PIXELS[False]
         assert launches * FIXED < 0.1 * tracing + beginning * FIXED, (samples, launches)
         assert longest < (6 if nanoseconds == 10_000 and not branching else 1.5), samples
+
+
+def test_launches_run_as_long_as_they_are_recorded(clock):
+    """Recording the kernel of a large csg takes longer than a launch should: that does not make launches smaller."""
+    from mitsuba_plugins.integrators.pace import Pace
+
+    pace, width, height, first, launches = Pace(True, 16), 160, 120, 0, 0
+    while first < height:
+        rows = min(height - first, pace.rows(width))
+        with pace.launch(rows * width):
+            clock.now += 0.6
+            pace.recorded()
+            clock.now += rows * width * 1e-5
+        first, launches = first + rows, launches + 1
+    assert launches < 5
 
 
 def launches(dr, render):

@@ -1,4 +1,4 @@
-"""Families of polyhedra, mirrors, glass and ray trees: how far the tracers hold, and what their truth is worth."""
+"""Families of bodies, mirrors, glass and ray trees: how far tracers hold, and their truth's worth."""
 
 from dataclasses import replace
 
@@ -12,14 +12,22 @@ from converter.renderers.native import NativeRenderer
 from converter.scene.geometry import check_geometry
 from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings
-from converter.studies.families import polyhedra, ray_trees, reflection, refraction
+from converter.studies.families import csgs, polyhedra, quadrics, ray_trees, reflection, refraction
 
-FAMILIES = {f.name: f for module in (polyhedra, reflection, refraction, ray_trees) for f in module.FAMILIES}
+FAMILIES = {
+    f.name: f for module in (polyhedra, quadrics, csgs, reflection, refraction, ray_trees) for f in module.FAMILIES
+}
 
 HOLDS = {
     "slivers": 1e-10,
     "horizon": 1e11,
     "empty": 1e-13,
+    "quadric-edge": 1e-12,
+    "needles": 1e-12,
+    "bowls": 1e-12,
+    "glass-shells": 1e-13,
+    "flush": 1e-13,
+    "crescents": 1e-10,
     "mirror-corner": 1e10,
     "trapped-ray": 40.0,
     "critical-angle": 1e-12,

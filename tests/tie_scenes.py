@@ -6,10 +6,10 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
-from converter.scene.model import Checker, Finish, Polyhedron, Scene, Texmap, Vector
+from converter.scene.model import Checker, Csg, Finish, Operand, Polyhedron, Quadric, Scene, Shape, Texmap, Vector
 from converter.scene.settings import Settings
 from converter.studies.exact.tracer import ExactTracer, Pixel
-from converter.studies.families.scenes import GLOW, MATTE, WHITE, Body, box, camera, floor, light, scene, sphere
+from converter.studies.families.scenes import GLASS, GLOW, MATTE, WHITE, Body, box, camera, floor, light, scene, sphere
 
 RED, GREEN, BLUE = (0.9, 0.2, 0.1), (0.1, 0.8, 0.2), (0.1, 0.2, 0.9)
 MIRROR = Finish(0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0)
@@ -296,6 +296,130 @@ def _eye(eye: Vector, along: Vector = LEVEL):
     ]
     return lambda: scene(view(eye, along), bodies)
 
+
+# ---- Of one ray each
+
+
+def _row_of_glass(eye: Vector, along: Vector, balls: int) -> Scene:
+    """The ray meets every ball's centre, where an error of its direction grows more than tenfold, and then a tile's
+    corner.
+    """
+
+    def at(t: float) -> Vector:
+        x, y, z = (round(e + t * a, 6) for e, a in zip(eye, along, strict=True))
+        return x, y, z
+
+    bodies: list[Body] = [(sphere(at(2.0 * k), 0.1), WHITE, GLASS) for k in range(1, balls + 1)]
+    bodies.append((wall((0.0, 0.0, 1.0), -at(2.0 * balls + 2.0)[2]), checker(0.02), GLOW))
+    return scene(view(eye, along), bodies)
+
+
+def _sunk(body: Callable[[Vector, float], Shape], center: Vector, side: tuple[float, float], lean: float) -> Scene:
+    """A body of clear glass stands in a mirror, which the ray meets at the body's edge: it goes on inside of that,
+    leaning inward so little that a rounding error would be a way.
+    """
+    (x, z), radius = side, 0.7
+    along = (-z - lean * x, -1.0, x - lean * z)
+    edge = (center[0] + radius * x, center[1], center[2] + radius * z)
+    a, b, c = (round(e - way, 8) for e, way in zip(edge, along, strict=True))
+    return scene(view((a, b, c), along), [(floor(center[1]), WHITE, MIRROR), (body(center, radius), RED, CLEAR)])
+
+
+def _beside(body: Callable[[Vector, float], Shape], center: Vector, side: tuple[float, float], lean: float) -> Scene:
+    """The body stands on a floor, whose point at its edge has light that comes from above, and from beside the body by
+    so little.
+    """
+    (x, z), radius = side, 0.7
+    edge = (center[0] + radius * x, center[1], center[2] + radius * z)
+
+    def at(out: float, up: float) -> Vector:
+        a, b, c = (round(e + way, 8) for e, way in zip(edge, (out * x, up, out * z), strict=True))
+        return a, b, c
+
+    bodies = [(floor(center[1]), WHITE, MATTE), (body(center, radius), RED, GLOW)]
+    return scene(view(at(2.0, 1.0), (-2.0 * x, -1.0, -2.0 * z)), bodies, [light(at(10 * lean, 10.0))])
+
+
+def _touched(body: Callable[[Vector, float], Shape], center: Vector, side: tuple[float, float], lean: float) -> Scene:
+    """The ray touches the body, and passes."""
+    (x, z), radius = side, 0.7
+    along = (-z, 10 * lean, x)
+    edge = (center[0] + radius * x, center[1], center[2] + radius * z)
+    a, b, c = (round(e - way, 8) for e, way in zip(edge, along, strict=True))
+    return scene(view((a, b, c), along), [(body(center, radius), RED, GLOW)])
+
+
+def _ellipsoid(center: Vector, radius: float) -> Quadric:
+    """Half as high as a ball, but for a root."""
+    x, y, z = center
+    g, h, i = (round(-2 * factor * c, 9) for factor, c in zip((1, 2, 1), center, strict=True))
+    return Quadric((1.0, 2.0, 1.0, 0.0, 0.0, 0.0, g, h, i, round(x * x + 2 * y * y + z * z - radius * radius, 9)))
+
+
+def _cylinder(center: Vector, radius: float) -> Quadric:
+    """Upright."""
+    x, _, z = center
+    return Quadric(
+        (
+            1.0,
+            0.0,
+            1.0,
+            0.0,
+            0.0,
+            0.0,
+            round(-2 * x, 9),
+            0.0,
+            round(-2 * z, 9),
+            round(x * x + z * z - radius * radius, 9),
+        )
+    )
+
+
+def _at_edges(
+    made: Callable[[Callable[[Vector, float], Shape], Vector, tuple[float, float], float], Scene],
+    body: Callable[[Vector, float], Shape],
+) -> list[Scene]:
+    """Bodies whose numbers are rounded up, and such whose are rounded down."""
+    return [
+        made(body, center, side, lean)
+        for center in ((33.3, 1.7, 5.9), (12.1, 0.3, -6.7), (1.3, 0.1, 7.7), (122.76, 0.27, -166.1))
+        for side in ((0.6, 0.8), (-0.6, 0.8), (-0.8, 0.6))
+        for lean in (0.01, 0.001)
+    ]
+
+
+def _cut_off(ball_first: bool, edge: tuple[float, float]) -> Scene:
+    """The ray meets a ball where a plane cuts it off: the first of both in the file."""
+    x, y = edge
+    parts: list[Shape] = [sphere((0.0, 0.0, 0.0), 1.0), wall((0.0, 0.0, 1.0), -0.6)]
+    first, second = parts if ball_first else parts[::-1]
+    body = Csg((Operand("+", first), Operand("&", second)))
+    return scene(view((2 * x, 2 * y, 1.4), (-x, -y, -0.8)), [(body, RED, MATTE)], [light((0.3, 0.2, 9.0))])
+
+
+ONE_RAY = replace(SETTINGS, width=1, height=1, pixel="center", max_depth=12)
+RAYS: dict[str, Callable[[], list[Scene]]] = {
+    "through a row of glass": lambda: [
+        _row_of_glass(eye, along, balls)
+        for eye in ((0.1, 0.3, 0.2), (12.1, 3.3, 7.2))
+        for along in ((0.6, 0.0, -0.8), (0.48, 0.6, -0.64), (0.36, 0.48, -0.8))
+        for balls in (3, 4)
+    ],
+    "into a ball in a mirror": lambda: _at_edges(_sunk, sphere),
+    "into an ellipsoid in a mirror": lambda: _at_edges(_sunk, _ellipsoid),
+    "into a cylinder in a mirror": lambda: _at_edges(_sunk, _cylinder),
+    "out beside a ball": lambda: _at_edges(_beside, sphere),
+    "out beside an ellipsoid": lambda: _at_edges(_beside, _ellipsoid),
+    "at the edge of a ball cut off": lambda: [
+        _cut_off(ball_first, edge)
+        for ball_first in (True, False)
+        for edge in ((0.8, 0.0), (0.48, 0.64), (-0.64, 0.48), (-0.768, 0.224), (0.0, -0.8))
+    ],
+    "touching a ball": lambda: _at_edges(_touched, sphere),
+    "touching an ellipsoid": lambda: _at_edges(_touched, _ellipsoid),
+    "touching a cylinder": lambda: _at_edges(_touched, _cylinder),
+}
+"""By a name: scenes of which one ray each is followed. Of errors by chance not all are too small to be seen."""
 
 TIE_SCENES: dict[str, tuple[str, Callable[[], Scene], Settings]] = {
     name: (kind, made, replace(SETTINGS, **changes))

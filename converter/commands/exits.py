@@ -23,7 +23,7 @@ _UNUSABLE = (
     ("converter.compare.metrics", "SizeMismatch"),
     ("converter.why.student", "UnknownToStudent"),
     ("converter.errors", "ExportError"),
-    ("converter.to_mitsuba.meshes", "PolyhedronError"),
+    ("converter.to_mitsuba.meshes", "MeshError"),
     ("converter.renderers.povray", "PovrayError"),
     ("converter.renderers.base", "EffectUnavailable"),
 )

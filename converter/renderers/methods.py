@@ -11,9 +11,10 @@ from typing import Any, Literal
 
 from converter.renderers.base import Renderer
 from converter.scene.depth import MAX_DEPTH
-from converter.scene.model import Scene
+from converter.scene.model import Csg, Quadric, Scene
 from converter.scene.settings import MOST_THREADS, Settings
 from converter.shapes.table import shape_kind
+from converter.to_mitsuba.fineness import Fineness
 
 Family = Literal["native", "mitsuba", "povray"]
 Arithmetic = Literal["double", "float", "mesh", "offset", "ulp"]
@@ -39,6 +40,7 @@ class Method:
         changes: settings that it has instead of the user's.
         most_surfaces: spheres and planes, together, that it bears; None for any number.
         usual: whether studies run it where nobody says which methods to run.
+        curved_only: whether it differs from others where there are quadrics or csgs only.
 
     """
 
@@ -50,6 +52,7 @@ class Method:
     changes: Mapping[str, Any] = field(default_factory=dict)
     most_surfaces: int | None = None
     usual: bool = True
+    curved_only: bool = False
 
     def renderer(self, variant: str | None = None) -> Renderer:
         """The renderer; Mitsuba in `variant`, unless that is None or part of the method."""
@@ -79,6 +82,8 @@ class Method:
 
     def unfit(self, scene: Scene) -> str | None:
         """Why the method is not for `scene`; None if it is."""
+        if self.curved_only and not any(isinstance(o.shape, Quadric | Csg) for o in scene.objects):
+            return "there are no quadrics and no csgs"
         if self.most_surfaces is None:
             return None
         count = sum(shape_kind(o.shape).count(o.shape) for o in scene.objects)
@@ -269,7 +274,17 @@ def _tessellated_methods() -> Iterator[Method]:
             "mitsuba",
             "Mitsuba, spheres as meshes",
             f"{share} radii off the sphere at most, else as mitsuba-offset: to see what tessellation costs",
-            {"intersections": "offset", "sphere_tolerance": float(share)},
+            {"intersections": "offset", "fineness": Fineness(spheres=float(share))},
+        )
+
+    for pixels in ("2", "1/2", "1/8"):
+        yield Method(
+            f"mitsuba-curved-{pixels}",
+            "mitsuba",
+            "Mitsuba, quadrics and csgs as coarser meshes",
+            f"{pixels} pixels off at most, and not 1/32, else as mitsuba-mesh: to see what tessellation costs",
+            {"intersections": "mesh", "fineness": Fineness(pixels=float(Fraction(pixels)))},
+            curved_only=True,
         )
 
 

@@ -11,6 +11,7 @@ from converter.renderers.base import Interrupted, Progress, RendererUnavailable,
 from converter.renderers.records import PixelRecord
 from converter.scene.model import Scene
 from converter.scene.settings import Settings
+from converter.to_mitsuba.fineness import USUAL, Fineness
 from converter.to_mitsuba.integrator import Intersections, RayPrecision
 
 LEAST_ROOM = 1 << 30
@@ -24,14 +25,14 @@ class MitsubaRenderer:
     Attributes:
         variant: "llvm_ad_rgb", "cuda_ad_rgb", or "auto": CUDA where a device passes its trial, else LLVM.
         intersections, precision: how the integrator finds what a ray hits, see its documentation.
-        sphere_tolerance: with "offset" and "ulp", spheres are meshes, off by no more than this share of their radius.
+        fineness: what meshes may be off by; only with "offset" and "ulp" can spheres be meshes.
 
     """
 
     variant: str = "auto"
     intersections: Intersections = "auto"
     precision: RayPrecision = "double"
-    sphere_tolerance: float | None = None
+    fineness: Fineness = USUAL
 
     def render(self, scene: Scene, settings: Settings, progress: Progress | None = None) -> Rendering:
         """Draw `scene`.
@@ -100,7 +101,7 @@ class MitsubaRenderer:
 
         shapes = self.intersections in ("mesh", "offset", "ulp")
         return load_description(
-            scene_description(scene, settings, self.intersections, self.precision, self.sphere_tolerance, shapes)
+            scene_description(scene, settings, self.intersections, self.precision, self.fineness, shapes)
         )
 
 

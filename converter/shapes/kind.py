@@ -212,7 +212,7 @@ class ShapeKind(Protocol[S]):
             name: what messages call it.
 
         Raises:
-            PolyhedronError, ValueError: it cannot be made a mesh.
+            MeshError, ValueError: it cannot be made a mesh.
         """
         ...
 

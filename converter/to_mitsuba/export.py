@@ -56,7 +56,7 @@ def export_scene(scene: Scene, settings: Settings, folder: Path) -> list[Path]:
 
     Raises:
         ExportError: the folder holds something that this function did not write.
-        EffectUnavailable, TextureError, PolyhedronError, OSError: as `scene_description` and the file system have it.
+        EffectUnavailable, TextureError, MeshError, OSError: as `scene_description` and the file system have it.
     """
     description = scene_description(scene, settings, with_shapes=len(scene.objects) <= MOST_SHAPES)
     earlier = _earlier_files(folder)

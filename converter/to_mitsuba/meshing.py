@@ -11,7 +11,8 @@ from converter.scene.model import Scene, Sphere
 from converter.scene.settings import Settings
 from converter.shapes.table import shape_kind
 from converter.to_mitsuba.bounds import Box, scene_bounds
-from converter.to_mitsuba.meshes.quadrics import View
+from converter.to_mitsuba.fineness import USUAL, Fineness
+from converter.to_mitsuba.meshes.quadrics import View, most_triangles
 
 MOST_TRIANGLES = 1 << 24
 """Of all spheres together, where they are meshes."""
@@ -58,13 +59,13 @@ class Meshing:
 
     Attributes:
         scene, settings: what is drawn, and how.
-        tolerance: what spheres that are meshes may be off by, as a share of their radius; None: they are no meshes.
+        fineness: what meshes may be off by.
 
     """
 
     scene: Scene
     settings: Settings
-    tolerance: float | None = None
+    fineness: Fineness = USUAL
 
     @cached_property
     def bounds(self) -> Box:
@@ -76,7 +77,9 @@ class Meshing:
         """Whence meshes are seen that are as fine as the picture needs."""
         camera, rows = self.scene.camera, self.settings.height * math.isqrt(self.settings.rays_a_pixel())
         pixel = 2 * math.tan(math.radians(camera.fovy) / 2) / rows
-        return View(camera.eye, math.dist(camera.eye, camera.look_at) / NEAR, pixel)
+        near = math.dist(camera.eye, camera.look_at) / NEAR
+        most = most_triangles(self.settings.width * self.settings.height * self.settings.samples)
+        return View(camera.eye, near, pixel * self.fineness.pixels / USUAL.pixels, most)
 
     @cached_property
     def unit_ball(self) -> SphereMesh | None:
@@ -86,6 +89,7 @@ class Meshing:
             ValueError: the tolerance asks for more than `MOST_TRIANGLES`.
 
         """
-        if self.tolerance is None:
+        if self.fineness.spheres is None:
             return None
-        return unit_ball(self.tolerance, sum(shape_kind(o.shape).ball(o.shape) is not None for o in self.scene.objects))
+        count = sum(shape_kind(o.shape).ball(o.shape) is not None for o in self.scene.objects)
+        return unit_ball(self.fineness.spheres, count)

@@ -11,6 +11,7 @@ from converter.scene.model import Scene
 from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings
 from converter.to_mitsuba.camera import sensor
+from converter.to_mitsuba.fineness import USUAL, Fineness
 from converter.to_mitsuba.finishes import bsdf
 from converter.to_mitsuba.integrator import Intersections, RayPrecision, integrator
 from converter.to_mitsuba.lights import light
@@ -25,7 +26,7 @@ def scene_description(
     settings: Settings,
     intersections: Intersections = "auto",
     precision: RayPrecision = "double",
-    sphere_tolerance: float | None = None,
+    fineness: Fineness = USUAL,
     with_shapes: bool = True,
 ) -> dict[str, Any]:
     """Everything that `scene`, drawn with `settings`, needs, by names that say where it stands in the scene file.
@@ -36,7 +37,7 @@ def scene_description(
     Raises:
         EffectUnavailable: the integrator cannot draw it.
         TextureError: a texture that is used cannot be read.
-        PolyhedronError, ValueError: as `shapes` has it.
+        MeshError, ValueError: as `shapes` has it.
 
     """
     scene = with_planes_shared(simplified(scene))
@@ -45,7 +46,7 @@ def scene_description(
     geometry = exact_surfaces(scene, needs)
     found: dict[str, Any] = {}
     if with_shapes:
-        found, meshes = shapes(scene, settings, sphere_tolerance)
+        found, meshes = shapes(scene, settings, fineness)
         for name, facts in meshes.items():
             geometry[name] |= facts
     description: dict[str, Any] = {

@@ -6,6 +6,7 @@ from converter.scene.model import Object, Scene
 from converter.scene.needs import SceneNeeds
 from converter.scene.settings import Settings
 from converter.shapes.table import shape_kind
+from converter.to_mitsuba.fineness import USUAL, Fineness
 from converter.to_mitsuba.meshing import Meshing
 
 
@@ -23,18 +24,16 @@ def exact_surfaces(scene: Scene, needs: SceneNeeds) -> dict[str, dict[str, Any]]
 
 
 def shapes(
-    scene: Scene, settings: Settings, sphere_tolerance: float | None = None
+    scene: Scene, settings: Settings, fineness: Fineness = USUAL
 ) -> tuple[dict[str, dict[str, Any]], dict[str, dict[str, Any]]]:
     """Every object as a shape, by its name, and what `geometry` has to tell of the meshes among them.
 
-    With a tolerance, spheres are meshes, their triangles off by no more than that share of the radius.
-
     Raises:
-        PolyhedronError: a polyhedron cannot be made into a mesh.
+        MeshError: a shape cannot be made a mesh.
         ValueError: the tolerance asks for too many triangles.
 
     """
-    meshing = Meshing(scene, settings, sphere_tolerance)
+    meshing = Meshing(scene, settings, fineness)
     result: dict[str, dict[str, Any]] = {}
     meshes: dict[str, dict[str, Any]] = {}
     for i, o in enumerate(scene.objects):

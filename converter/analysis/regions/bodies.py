@@ -106,6 +106,6 @@ REGIONS = (
         _large,
     ),
     Region(("size",), {"float": 1e-17, "mesh": 1e-13}, _small),
-    Region(("slivers",), {"float": 2e-6, "mesh": 2e-5}, _thin_glass),
+    Region(("slivers",), {"double": 1e-11, "float": 2e-6, "mesh": 2e-5}, _thin_glass),
     Region(("slivers",), dict.fromkeys(("mesh", "offset", "ulp"), 0.0), _clear_plates),
 )

@@ -5,9 +5,11 @@ from itertools import combinations
 
 import numpy as np
 
-from converter.analysis.regions.region import Finding, Region
+from converter.analysis.regions.region import Finding, Region, worst
 from converter.analysis.regions.situation import Floats, Situation
 from converter.renderers.methods import Arithmetic
+from converter.scene.model import Csg
+from converter.shapes.csg_gaps import Gap, smallest_gap
 
 NEIGHBORS = 8
 """Planes that a plane is compared with, at most: those that come next to it in an order in which planes that are
@@ -73,6 +75,31 @@ def _glass_balls(s: Situation, limit: float) -> Iterator[Finding]:
         yield Finding(s.scene.objects[a].line, f"{text} (less than {limit:.2g})")
 
 
+def _operands(s: Situation, limit: float) -> Iterator[Finding]:
+    yield from _near_operands(s, limit, glass=False)
+
+
+def _glass_operands(s: Situation, limit: float) -> Iterator[Finding]:
+    yield from _near_operands(s, limit, glass=True)
+
+
+def _near_operands(s: Situation, limit: float, glass: bool) -> Iterator[Finding]:
+    """Csgs of which two leaves have surfaces that are nearly one; or of those the transparent ones."""
+    shares = np.full(len(s.scene.objects), np.inf)
+    gaps: dict[int, Gap] = {}
+    for i, o in enumerate(s.scene.objects):
+        if isinstance(o.shape, Csg) and (not glass or s.finish(i).kt > 0):
+            gap = smallest_gap(o.shape, s.reach)
+            if gap is not None:
+                gaps[i], shares[i] = gap, gap.share
+    for i, more in worst(shares, limit):
+        text = f"surfaces of the leaves {gaps[i].first} and {gaps[i].second} of object {i}, a csg"
+        if glass:
+            text += ", which is transparent"
+        text += f", are {shares[i]:.2g} of their coordinates apart (less than {limit:.2g}{more})"
+        yield Finding(s.scene.objects[i].line, text)
+
+
 def _closeness(p: Floats, q: Floats, r: float, t: float) -> float:
     distance = float(np.linalg.norm(p - q))
     gaps = [abs(abs(r - t) - distance), abs(r + t - distance)]
@@ -85,4 +112,6 @@ REGIONS = (
     Region(
         ("nested-glass", "bubble", "overlapping-glass"), {"double": 3e-13, "float": 3e-5, "mesh": 3e-6}, _glass_balls
     ),
+    Region(("bowls", "flush", "crescents"), {"double": 5e-14, "float": 5e-7}, _operands),
+    Region(("glass-shells",), {"float": 1e-5, "mesh": 1e-3}, _glass_operands),
 )

@@ -4,10 +4,14 @@ import math
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from converter.analysis.regions.region import Finding, Region, worst
 from converter.analysis.regions.situation import Floats, Situation
+from converter.scene.model import Csg, Polyhedron, Shape, Sphere
+from converter.shapes.csg_program import written_leaves
 from converter.shapes.table import shape_kind
+from converter.to_mitsuba.meshes.quadrics import most_triangles
 
 _NOISE = 2.0**-48
 """What a computed distance may be off, as a share of coordinates."""
@@ -50,6 +54,9 @@ def _pixel_shares(s: Situation, polyhedra_only: bool = False) -> Floats:
     own = endless[s.planes.object]
     np.maximum.at(distance, s.planes.object[own], seen[own])
     np.maximum.at(coordinate, s.planes.object[own], np.abs(s.planes.offset[own]))
+    for i in np.flatnonzero(endless & (distance == 0)).tolist():  # a quadric, or a csg
+        shape = s.scene.objects[i].shape
+        distance[i] = shape_kind(shape).distances(shape, s.needs.facts[i], s.scene.camera.eye).nearest
     shares = _pixel(s) * distance / (np.maximum(coordinate, s.reach) + distance)
     balls = bodies.object[bodies.is_ball]
     shares[balls] = np.inf if polyhedra_only else shares[balls]
@@ -62,7 +69,7 @@ def _long_lens_at_edges(s: Situation, limit: float) -> Iterator[Finding]:
 
 
 def _long_lens(s: Situation, limit: float) -> Iterator[Finding]:
-    yield from _too_long(s, _pixel_shares(s), limit)
+    yield from _too_long(s, np.where(_curved(s), np.inf, _pixel_shares(s)), limit)
 
 
 def _too_long(s: Situation, shares: Floats, limit: float) -> Iterator[Finding]:
@@ -72,9 +79,37 @@ def _too_long(s: Situation, shares: Floats, limit: float) -> Iterator[Finding]:
         yield Finding(s.scene.objects[i].line, text)
 
 
+def _fine_meshes(s: Situation, limit: float) -> Iterator[Finding]:
+    """Curved bodies that are meshes, and larger than as many pixels as their triangles can be made for."""
+    settings = s.settings
+    most = most_triangles(settings.width * settings.height * settings.samples)
+    bodies = s.bodies
+    shares = np.full(len(s.scene.objects), np.inf)
+    distance = np.maximum(np.linalg.norm(bodies.center - s.eye, axis=1) - bodies.radius, 0)
+    shares[bodies.object] = most * _pixel(s) * np.maximum(distance, bodies.radius) / bodies.radius
+    for i, more in worst(np.where(_curved(s), shares, np.inf), limit):
+        text = f"object {i}, seen through a lens of {s.scene.camera.fovy:.3g} degrees, is larger than its mesh is fine"
+        size = most / shares[i]
+        yield Finding(s.scene.objects[i].line, f"{text}: {size:.2g} pixels (more than {most / limit:.2g}{more})")
+
+
+def _long_lens_at_quadrics(s: Situation, limit: float) -> Iterator[Finding]:
+    yield from _too_long(s, np.where(_curved(s), _pixel_shares(s), np.inf), limit)
+
+
+def _curved(s: Situation) -> NDArray[np.bool_]:
+    """For each object whether it has a curved surface, and is no ball."""
+
+    def is_curved(shape: Shape) -> bool:
+        leaves = written_leaves(shape) if isinstance(shape, Csg) else iter([shape])
+        return not isinstance(shape, Sphere) and not all(isinstance(leaf, Polyhedron) for leaf in leaves)
+
+    return np.array([is_curved(o.shape) for o in s.scene.objects], dtype=np.bool_)
+
+
 def _long_lens_at_mirrors(s: Situation, limit: float) -> Iterator[Finding]:
     if s.needs.reflects or s.needs.refracts:
-        yield from _long_lens(s, limit)
+        yield from _too_long(s, _pixel_shares(s), limit)
 
 
 def _horizon(s: Situation, limit: float) -> Iterator[Finding]:
@@ -148,6 +183,12 @@ REGIONS = (
     Region(
         ("mirror-corner", "critical-angle", "grazing-glass"), {"double": 3e-14, "float": 2e-6}, _long_lens_at_mirrors
     ),
+    Region(
+        ("quadric-edge", "needles"),
+        {"double": 3e-15, "float": 1e-6, "offset": 5e-8, "ulp": 5e-8},
+        _long_lens_at_quadrics,
+    ),
+    Region(("quadric-edge",), dict.fromkeys(("mesh", "offset", "ulp"), 4.0), _fine_meshes),
     Region(("horizon",), {"mesh": 1e-3}, _horizon),
     Region(("fovy",), {"float": 3e-3, "mesh": 3e-3}, _wide_lens),
     Region(("tie-along",), {"double": 1e-10}, _short_view),

@@ -12,6 +12,6 @@ that misses a face or an edge is not used. Then the polygons' own are, if they c
 """
 
 from converter.to_mitsuba.meshes.body import polyhedron_mesh
-from converter.to_mitsuba.meshes.mesh import PolyhedronError, PolyhedronMesh, write_ply
+from converter.to_mitsuba.meshes.mesh import MeshError, PolyhedronMesh, write_ply
 
-__all__ = ["PolyhedronError", "PolyhedronMesh", "polyhedron_mesh", "write_ply"]
+__all__ = ["MeshError", "PolyhedronMesh", "polyhedron_mesh", "write_ply"]

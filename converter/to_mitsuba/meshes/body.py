@@ -8,7 +8,7 @@ from operator import le, mul, sub
 import numpy as np
 
 from converter.to_mitsuba.bounds import LARGEST, Box
-from converter.to_mitsuba.meshes.mesh import Long, Method, PolyhedronError, PolyhedronMesh, listed
+from converter.to_mitsuba.meshes.mesh import Long, MeshError, Method, PolyhedronMesh, listed
 from converter.to_mitsuba.meshes.neighborhoods import edges_of, hull_rings, points_of, polygon_rings
 from converter.to_mitsuba.meshes.triangles import mesh_of, plate_mesh
 from native_tracer.halfspaces import Face, HalfSpace, PolyhedronFacts, polyhedron_faces, polyhedron_facts
@@ -35,13 +35,13 @@ def polyhedron_mesh(planes: Sequence[HalfSpace], bounds: Box, name: str = "polyh
         name: what messages call the polyhedron.
 
     Raises:
-        PolyhedronError: there is neither a volume nor a face, no method gives a closed surface, or float32 numbers do
+        MeshError: there is neither a volume nor a face, no method gives a closed surface, or float32 numbers do
             not hold it.
 
     """
     try:
         return _whole_mesh(planes, bounds, name)
-    except PolyhedronError:
+    except MeshError:
         # Where planes nearly coincide, corners are nowhere in particular; float32 does not tell such planes apart.
         distinct = _distinct(planes)
         if len(distinct) == len(planes):
@@ -79,7 +79,7 @@ def _whole_mesh(planes: Sequence[HalfSpace], bounds: Box, name: str) -> Polyhedr
     if not _fit(faces, bounds):
         facts = polyhedron_facts([body])[0]
         if not facts.drawn:
-            raise PolyhedronError(f"{name}: planes {listed(facts.conflict)} leave no volume")
+            raise MeshError(f"{name}: planes {listed(facts.conflict)} leave no volume")
         kept = facts.plate[:1] or facts.kept
         for box in (bounds, _enlarged(bounds, facts)):
             closed = body + _box_planes(box)
@@ -87,10 +87,10 @@ def _whole_mesh(planes: Sequence[HalfSpace], bounds: Box, name: str) -> Polyhedr
             if faces and any(faces[k].neighbors for k in kept):
                 break
         if kept and not faces:
-            raise PolyhedronError(f"{name}: what is left of it inside of the bounds has no volume")
+            raise MeshError(f"{name}: what is left of it inside of the bounds has no volume")
     size = max((abs(x) for face in faces for x in face.points), default=1.0)
     if not SMALLEST < size < 4 * LARGEST:
-        raise PolyhedronError(f"{name}: single precision, of which meshes are, has no numbers for a size of {size:.3g}")
+        raise MeshError(f"{name}: single precision, of which meshes are, has no numbers for a size of {size:.3g}")
     unit = _unit_planes(closed)
     if len(only := [k for k, face in enumerate(faces) if face.neighbors]) == 1:
         return plate_mesh(unit, only[0], faces[only[0]])
@@ -101,9 +101,9 @@ def _whole_mesh(planes: Sequence[HalfSpace], bounds: Box, name: str) -> Polyhedr
             rings = hull_rings(unit, faces, edges) if method == "hull" else polygon_rings(faces, edges)
             mesh = mesh_of(unit, rings, len(planes), faces, method)
             return replace(mesh, outside=tuple(k for k in kept if not faces[k].neighbors))
-        except PolyhedronError as error:
+        except MeshError as error:
             problems.append(f"{error} (by {method})")
-    raise PolyhedronError(f"{name}: " + "; ".join(problems))
+    raise MeshError(f"{name}: " + "; ".join(problems))
 
 
 def _unit_planes(planes: Sequence[Sequence[float]]) -> Long:

@@ -21,7 +21,7 @@ from converter.shapes.quadric_form import moved
 from converter.shapes.quadric_frame import frame_of
 from converter.to_mitsuba.bounds import LARGEST, Box
 from converter.to_mitsuba.meshes.body import SMALLEST, polyhedron_mesh
-from converter.to_mitsuba.meshes.mesh import PolyhedronError
+from converter.to_mitsuba.meshes.mesh import MeshError
 from converter.to_mitsuba.meshes.quadrics import OFF, QuadricMesh, View, quadric_solid
 
 if TYPE_CHECKING:
@@ -110,14 +110,14 @@ def csg_mesh(program: Program, bounds: Box, view: View, name: str = "csg") -> Qu
         name: what messages call it.
 
     Raises:
-        PolyhedronError: a leaf cannot be made a mesh, or float32 numbers do not hold it.
+        MeshError: a leaf cannot be made a mesh, or float32 numbers do not hold it.
 
     """
     pieces = [_surfaces(leaf) for leaf in program.leaves]
     solids = [_solid(leaf, bounds, view, f"{name}: its leaf {k}") for k, leaf in enumerate(program.leaves)]
     size = max(float(np.abs(solid.vertices).max(initial=0.0)) for solid in solids)
     if not SMALLEST < size < LARGEST:  # of NaN, too
-        raise PolyhedronError(f"{name}: single precision, of which meshes are, has no numbers for a size of {size:.3g}")
+        raise MeshError(f"{name}: single precision, of which meshes are, has no numbers for a size of {size:.3g}")
     vertices, triangles, owners = _combined(program, solids, name)
     parts: list[tuple[Floats, Floats, Integers]] = []
     off = tilt = 0.0
@@ -220,7 +220,7 @@ def _combined(program: Program, solids: Sequence[_Solid], name: str) -> tuple[Fl
         )
         inner = Manifold(mesh)
         if inner.status() != Error.NoError:
-            raise PolyhedronError(f"{name}: the mesh of its leaf {k} closes no body ({inner.status().name})")
+            raise MeshError(f"{name}: the mesh of its leaf {k} closes no body ({inner.status().name})")
         return _Body(inner, solid.complement)
 
     whole = fold(program.code, body, _boolean)

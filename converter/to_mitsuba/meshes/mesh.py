@@ -18,8 +18,8 @@ Ring = list[int]
 """What is around a face, neighbours' planes or vertices, counterclockwise as seen from outside."""
 
 
-class PolyhedronError(ValueError):
-    """A polyhedron cannot be made a mesh; the message names it, and the plane."""
+class MeshError(ValueError):
+    """A shape cannot be made a mesh; the message names it, and the plane or the leaf."""
 
 
 @dataclass(frozen=True, eq=False)

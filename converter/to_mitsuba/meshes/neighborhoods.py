@@ -6,7 +6,7 @@ from itertools import compress
 
 import numpy as np
 
-from converter.to_mitsuba.meshes.mesh import Floats, Long, PolyhedronError, Ring, listed
+from converter.to_mitsuba.meshes.mesh import Floats, Long, MeshError, Ring, listed
 from native_tracer.halfspaces import Face
 
 HAIR = 2.0**-46
@@ -55,7 +55,7 @@ def hull_rings(planes: Long, faces: Sequence[Face], edges: set[tuple[int, int]])
     """Find each face's neighbours by the convex hull of the dual points.
 
     Raises:
-        PolyhedronError: the hull misses a plane, or an edge of the clipped polygons.
+        MeshError: the hull misses a plane, or an edge of the clipped polygons.
 
     """
     from manifold3d import Manifold  # late: takes a while, and many scenes have no polyhedra
@@ -64,7 +64,7 @@ def hull_rings(planes: Long, faces: Sequence[Face], edges: set[tuple[int, int]])
     center, axes = _frame([faces[k] for k in kept])
     depths = -(planes[kept, :3] @ center + planes[kept, 3])
     if not np.all(depths > 0):
-        raise PolyhedronError("no point inside could be computed")
+        raise MeshError("no point inside could be computed")
     # Adding zero turns -0 into 0, so that points can be told by their bytes.
     points = (planes[kept, :3] @ axes / depths[:, None]).astype(np.float64) + 0.0
     plane_of = {point.tobytes(): k for point, k in zip(points, kept, strict=True)}
@@ -72,7 +72,7 @@ def hull_rings(planes: Long, faces: Sequence[Face], edges: set[tuple[int, int]])
     corners = np.asarray(hull.vert_properties, dtype=np.float64)[:, :3] + 0.0
     owners = [plane_of[point.tobytes()] for point in corners]
     if missing := sorted(set(kept) - set(owners)):
-        raise PolyhedronError(f"plane {listed(missing)} has no face")
+        raise MeshError(f"plane {listed(missing)} has no face")
     following: dict[int, dict[int, int]] = {k: {} for k in kept}
     for triangle in np.asarray(hull.tri_verts).tolist():
         a, b, c = (owners[corner] for corner in triangle)
@@ -80,7 +80,7 @@ def hull_rings(planes: Long, faces: Sequence[Face], edges: set[tuple[int, int]])
     # Dual points in a plane are a vertex of many faces, which the hull splits at random: only real edges count.
     rings = {k: [i for i in _walk(ring) if (k, i) in edges] for k, ring in following.items()}
     if missing := [k for k, n in Counter(k for k, _ in edges).items() if len(rings[k]) != n]:
-        raise PolyhedronError(f"plane {listed(missing)} has other neighbours")
+        raise MeshError(f"plane {listed(missing)} has other neighbours")
     return rings
 
 

@@ -17,8 +17,9 @@ from numpy.typing import NDArray
 from converter.scene.model import Quadric, Vector
 from converter.shapes.quadric_frame import Frame, frame_of
 from converter.to_mitsuba.bounds import LARGEST, Box
+from converter.to_mitsuba.fineness import USUAL
 from converter.to_mitsuba.meshes.body import SMALLEST
-from converter.to_mitsuba.meshes.mesh import PolyhedronError
+from converter.to_mitsuba.meshes.mesh import MeshError
 
 if TYPE_CHECKING:
     import trimesh
@@ -26,10 +27,12 @@ if TYPE_CHECKING:
 Floats = NDArray[np.float64]
 Triangles = NDArray[np.int64]
 
-OFF = 1 / 32
+OFF = USUAL.pixels
 """How much of a pixel the middle of an edge may be off the surface."""
 MOST_TRIANGLES = 1 << 20
-"""Of one mesh, about: what asks for more stays coarser."""
+"""Of one mesh, about."""
+LEAST_TRIANGLES, TRIANGLES_A_PIXEL = 1 << 13, 8
+"""Small pictures do with fewer, whatever their lens asks for."""
 AROUND, STEP = 16, 0.5
 """Coarse meshes: corners around an axis, and steps along hyperbolas, in units of their hyperbolic angle."""
 WIDEST = 64
@@ -53,13 +56,20 @@ class View(NamedTuple):
     Attributes:
         eye: where the camera is.
         near: no surface has to be finer than one at this distance.
-        pixel: the angle of a pixel.
+        pixel: the angle of a pixel, or of several where meshes may be coarser.
+        most: triangles of one mesh, about; what asks for more stays coarser.
 
     """
 
     eye: Vector
     near: float
     pixel: float
+    most: int = MOST_TRIANGLES
+
+
+def most_triangles(pixels: int) -> int:
+    """Of one mesh, for a picture of so many pixels."""
+    return min(max(TRIANGLES_A_PIXEL * pixels, LEAST_TRIANGLES), MOST_TRIANGLES)
 
 
 @dataclass(frozen=True, eq=False)
@@ -117,7 +127,7 @@ def quadric_mesh(shape: Quadric, bounds: Box, view: View, name: str = "quadric")
         name: what messages call it.
 
     Raises:
-        PolyhedronError: float32 numbers do not hold it.
+        MeshError: float32 numbers do not hold it.
 
     """
     frame = frame_of(shape)
@@ -125,7 +135,7 @@ def quadric_mesh(shape: Quadric, bounds: Box, view: View, name: str = "quadric")
     triangles = triangles[surface]
     size = float(np.abs(frame.origin + points @ frame.axes.T).max(initial=0.0))
     if not SMALLEST < size < LARGEST:  # of NaN, too
-        raise PolyhedronError(f"{name}: single precision, of which meshes are, has no numbers for a size of {size:.3g}")
+        raise MeshError(f"{name}: single precision, of which meshes are, has no numbers for a size of {size:.3g}")
     inside = _in_box(frame, points, triangles, bounds)
     triangles = triangles[inside] if inside.any() else triangles
     points, triangles, _ = _refined(frame, _Mesh(points, triangles, np.full(len(triangles), True)), view, bounds)
@@ -356,7 +366,7 @@ def _refined(frame: Frame, mesh: _Mesh, view: View, bounds: Box | None = None) -
     points, triangles, surface = mesh
     finished: list[Triangles] = []
     flags: list[NDArray[np.bool_]] = []
-    while len(triangles) and sum(map(len, finished)) + len(triangles) < MOST_TRIANGLES:
+    while len(triangles) and sum(map(len, finished)) + len(triangles) < view.most:
         pairs = np.sort(triangles[:, [[0, 1], [1, 2], [2, 0]]].reshape(-1, 2), axis=1)
         keys, owner = np.unique(pairs[:, 0] * len(points) + pairs[:, 1], return_inverse=True)
         ends = points[np.column_stack([keys // len(points), keys % len(points)])]

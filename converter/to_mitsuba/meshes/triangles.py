@@ -6,7 +6,7 @@ from itertools import islice
 import numpy as np
 from numpy.typing import NDArray
 
-from converter.to_mitsuba.meshes.mesh import Floats, Long, Method, PolyhedronError, PolyhedronMesh, Ring, listed
+from converter.to_mitsuba.meshes.mesh import Floats, Long, MeshError, Method, PolyhedronMesh, Ring, listed
 from converter.to_mitsuba.meshes.neighborhoods import points_of
 from native_tracer.halfspaces import Face
 
@@ -19,7 +19,7 @@ def mesh_of(planes: Long, rings: dict[int, Ring], count: int, faces: Sequence[Fa
     """The faces of the first `count` planes as triangles; the rest are the box's.
 
     Raises:
-        PolyhedronError: the rings close no surface, or not that of the polyhedron.
+        MeshError: the rings close no surface, or not that of the polyhedron.
 
     """
     vertices, corners = _vertices(rings, faces)
@@ -62,15 +62,15 @@ def _vertices(rings: dict[int, Ring], faces: Sequence[Face]) -> tuple[Floats, di
     """The vertices of a closed surface, (v, 3), and those that each ring's edges begin at.
 
     Raises:
-        PolyhedronError: a face does not join its neighbours, or the surface is not closed like a sphere's.
+        MeshError: a face does not join its neighbours, or the surface is not closed like a sphere's.
 
     """
     # Half-edges, one for each face and neighbour: the one on the other side, and the next one around the face.
     index = {pair: h for h, pair in enumerate((k, i) for k, ring in rings.items() for i in ring)}
     if single := {k for k, i in index if (i, k) not in index}:
-        raise PolyhedronError(f"the face of plane {listed(sorted(single))} does not join its neighbours")
+        raise MeshError(f"the face of plane {listed(sorted(single))} does not join its neighbours")
     if lost := [k for k, ring in rings.items() if len(ring) < 3]:
-        raise PolyhedronError(f"the face of plane {listed(lost)} is lost")
+        raise MeshError(f"the face of plane {listed(lost)} is lost")
     twins = [index[i, k] for k, i in index]
     before = [index[k, ring[a - 1]] for k, ring in rings.items() for a in range(len(ring))]
     # Around a vertex: from a half-edge that begins there, to the twin of the one before it.
@@ -83,7 +83,7 @@ def _vertices(rings: dict[int, Ring], faces: Sequence[Face]) -> tuple[Floats, di
             h = twins[before[h]]
         count += vertex[start] == count
     if count - len(index) // 2 + len(rings) != 2:
-        raise PolyhedronError("the faces close no surface")
+        raise MeshError("the faces close no surface")
     # Every face has computed where its edges begin. Rounding aside they agree, and any of them will do.
     begin = {(k, i): p for k, face in enumerate(faces) for i, p in zip(face.neighbors, points_of(face), strict=True)}
     places = np.empty((count, 3))
@@ -100,7 +100,7 @@ def _check_convex(planes: Long, rings: dict[int, Ring], vertices: Floats, corner
     before and after the edge between them.
 
     Raises:
-        PolyhedronError: there are others.
+        MeshError: there are others.
 
     """
     owners = np.repeat(list(corners), [len(ring) for ring in corners.values()])
@@ -115,9 +115,9 @@ def _check_convex(planes: Long, rings: dict[int, Ring], vertices: Floats, corner
     outermost = np.maximum(heights, _heights(planes, owners[:, None], vertices[beside]).max(axis=1))
     allowed = OFF * np.abs(vertices).max()
     if np.any(out := outermost > allowed):
-        raise PolyhedronError(f"plane {listed(np.unique(owners[out]))} cuts off more")
+        raise MeshError(f"plane {listed(np.unique(owners[out]))} cuts off more")
     if np.any(off := heights < -allowed):
-        raise PolyhedronError(f"the face of plane {listed(np.unique(owners[off]))} is not flat")
+        raise MeshError(f"the face of plane {listed(np.unique(owners[off]))} is not flat")
 
 
 def _heights(planes: Long, which: NDArray[np.int64], points: Floats) -> Floats:

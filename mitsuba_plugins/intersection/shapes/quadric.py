@@ -9,8 +9,8 @@ the largest number of Q is about 1. That makes four rows:
     Qxy, Qxz, Qyz, and e1
     g, and e0
 
-The quadric may be off by e0 + e1 r + e2 r^2, in units of the distance from 1 to the next double, where no coordinate of
-q is larger than r.
+The quadric may be off by e0 + e1 r + e2 r^2 + |q| . |Q| |q|, in units of the distance from 1 to the next double, where
+no coordinate of q is larger than r. The last term is the rounding of q . Q q, which is tiny along a needle's axis.
 
 Sigg, Weyrich, Botsch and Gross, GPU-Based Ray-Casting of Quadratic Surfaces, Symposium on Point-Based Graphics, 2006.
 Haines, Gunther and Akenine-Moller, Precision Improvements for Ray/Sphere Intersection, Ray Tracing Gems ch. 7, have the
@@ -29,7 +29,7 @@ import numpy as np
 from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.intersection.passages import Passage
 from mitsuba_plugins.intersection.rays import Ray, largest
-from mitsuba_plugins.intersection.rounding import epsilon, input_error, most_blur
+from mitsuba_plugins.intersection.rounding import epsilon, input_error, least_spread, most_blur
 from mitsuba_plugins.intersection.shapes.kind import Contact, Row, Rows, Shape, SurfacePoint
 
 ROWS = 4
@@ -116,7 +116,6 @@ def _rows(numbers: list[float]) -> list[Row]:
     e2, e1, e0 = sum(errors[:6]), sum(errors[6:9]), errors[9]
     e0 += far * (e1 + far * e2) + abs(k)
     e1 += 2 * far * e2 + 2 * sum(map(abs, g))
-    e2 += sum(abs(x) for row in q for x in row)
     return [
         (*m, k),
         (q[0][0], q[1][1], q[2][2], e2),
@@ -199,8 +198,10 @@ class _Quadric:
     def error(self, q: Any) -> Any:
         """How far that may be off."""
         e2, e1, e0 = self.errors
-        reach = largest(q)
-        return epsilon(reach) * (e0 + reach * (e1 + reach * e2))
+        reach, v = largest(q), dr.abs(q)
+        xy, xz, yz = dr.abs(self.mixed)
+        rounding = dr.dot(dr.abs(self.diagonal), v * v) + 2 * (xy * v.x * v.y + xz * v.x * v.z + yz * v.y * v.z)
+        return epsilon(reach) * (e0 + reach * (e1 + reach * e2) + rounding)
 
     def bend(self) -> Any:
         """A bound of the length of Q v for unit vectors v."""
@@ -262,7 +263,7 @@ def _line(quadric: _Quadric, ray: Ray) -> _Line:
 
 def _most_touching(quadric: _Quadric, line: _Line, reach: Any) -> Any:
     """The discriminant of rays that are near to touching; the gradient is 0 at a cone's tip, and small near by."""
-    near_tip = epsilon(reach) * dr.square(quadric.bend() * (reach + dr.abs(line.middle)))
+    near_tip = dr.square(least_spread(reach) * quadric.bend() * (reach + dr.abs(line.middle)))
     return most_blur(reach) * dr.squared_norm(line.half_gradient) + near_tip
 
 

@@ -138,11 +138,14 @@ class Csg {
         L between_primitives;  // the least distance between two of the leaf's own
     };
 
-    // The passages through the leaves that some ray may meet, by the order of the leaves.
+    // The passages through the leaves that some ray may meet, by the order of the leaves, and what is left of the
+    // expression without the others.
     struct Passages {
         Ends ends[most_csg_leaves];
         int place[most_csg_leaves];  // of a leaf's, or -1: no ray meets it
         int count;
+        int program[2 * most_csg_leaves];
+        int steps;
     };
 
     struct Node {
@@ -214,6 +217,43 @@ class Csg {
         return met;
     }
 
+    // Leaves out of the expression those that no ray meets: they are empty, and so may be what they are part of.
+    // Returns the leaves that are left, a bit each.
+    std::uint64_t reduce(std::uint64_t met, Passages& passages) const {
+        constexpr int empty = -1;
+        int stack[deepest_csg_stack];  // where each operand begins in the program
+        int size = 0;
+        int end = 0;
+        for (const int step : plan_.program) {
+            if (step >= 0) {
+                const bool is_met = (met >> step & 1) != 0;
+                stack[size++] = is_met ? end : empty;
+                passages.program[end] = step;
+                end += is_met;
+                continue;
+            }
+            const int right = stack[--size];
+            int& left = stack[size - 1];
+            if (left != empty && right != empty) {
+                passages.program[end++] = step;
+            } else if (step == CsgDescription::unite) {
+                left = std::max(left, right);
+            } else if (step == CsgDescription::intersect || left == empty) {
+                const int operand = std::max(left, right);
+                end = operand == empty ? end : operand;
+                left = empty;
+            }
+        }
+        passages.steps = end;
+        std::uint64_t left = 0;
+        for (int i = 0; i < end; ++i) {
+            if (passages.program[i] >= 0) {
+                left |= std::uint64_t(1) << passages.program[i];
+            }
+        }
+        return left;
+    }
+
     // ---- Along rays -------------------------------------------------------------------------------------------------
 
     Start<Real> start_of(const Rays<Real>& rays) const {
@@ -236,7 +276,7 @@ class Csg {
     }
 
     void pass_leaves(const Rays<Real>& rays, const Start<Real>& start, Passages& passages) const {
-        const std::uint64_t met = leaves_met(rays);
+        const std::uint64_t met = reduce(leaves_met(rays), passages);
         const L infinity = std::numeric_limits<Real>::infinity();
         passages.count = 0;
         for (std::size_t i = 0; i < leaves_.size(); ++i) {
@@ -275,7 +315,8 @@ class Csg {
     [[gnu::always_inline]] Mask<Real> value_behind(const Passages& passages, L t) const {
         Mask<Real> stack[deepest_csg_stack];
         int size = 0;
-        for (const int step : plan_.program) {
+        for (int i = 0; i < passages.steps; ++i) {
+            const int step = passages.program[i];
             if (step >= 0) {
                 const int place = passages.place[step];
                 if (place < 0) {

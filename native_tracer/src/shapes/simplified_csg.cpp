@@ -37,6 +37,24 @@ std::optional<PolyhedronDescription> combined(const Part& left, int operation, c
     return result;
 }
 
+// Puts the leaves into the order in which the program has them: of two that are met at once the first counts.
+void order_leaves(CsgDescription& csg) {
+    std::vector<int> places(csg.leaves.size(), -1);
+    std::vector<LeafDescription> leaves;
+    for (int& step : csg.program) {
+        if (step < 0) {
+            continue;
+        }
+        int& place = places[static_cast<std::size_t>(step)];
+        if (place < 0) {
+            place = static_cast<int>(leaves.size());
+            leaves.push_back(std::move(csg.leaves[static_cast<std::size_t>(step)]));
+        }
+        step = place;
+    }
+    csg.leaves = std::move(leaves);
+}
+
 }  // namespace
 
 ShapeDescription simplified(const CsgDescription& csg) {
@@ -102,6 +120,7 @@ ShapeDescription simplified(const CsgDescription& csg) {
         return std::visit([](auto& leaf) { return ShapeDescription(leaf); }, result.leaves.front());
     }
     result.program = std::move(whole.program);
+    order_leaves(result);
     return result;
 }
 
