@@ -42,8 +42,10 @@ CAUSES = {
     "glossy rays": "scene:16: finish 1 has a cone",
     "motion": "scene:20: object 1 moves",
 }
-DRAWN = {"soft shadows"}
+DRAWN = {"soft shadows", "motion"}
 """What the renderers draw."""
+STILL = {"mitsuba-mesh"}
+"""Those that do not draw motion."""
 
 
 @pytest.mark.parametrize("effect", EFFECTS)
@@ -84,7 +86,7 @@ DRAWING = ("native", "mitsuba-analytic", "mitsuba-mesh")
 @pytest.mark.parametrize("method", DRAWING)
 def test_no_renderer_ignores_an_effect(method, effect):
     scene = parse_scene(write_scene(EFFECTS[effect]))
-    if effect in DRAWN:
+    if effect in DRAWN and not (effect == "motion" and method in STILL):
         pixels, plain = (METHODS[method].renderer(VARIANT).render(each, SETTINGS).pixels for each in (scene, PLAIN))
         assert np.asarray(pixels).tobytes() != np.asarray(plain).tobytes()
         return
