@@ -288,7 +288,10 @@ def test_no_displacement_is_the_plain_scene_to_the_last_bit():
 # ---- What slides in itself
 
 
-def sliding(move, floor=Polyhedron(((0, 2, 0, 2),)), eye=(0.5, 1.5, -8), light=(2, -1, 1)):
+FLOOR = Polyhedron(((0, 2, 0, 2),))
+
+
+def sliding(move, floor=FLOOR, eye=(0.5, 1.5, -8), light=(2, -1, 1)):
     """A floor of one colour, with a light on it, and a ball above."""
     objects = (Object(0, 0, floor, move=move), Object(0, 1, Sphere((0, 1, 1), 1)))
     lights = (Light(light, (1, 1, 1), (1, 0, 0)), Light((-3, 6, -3), (0.5, 0.5, 0.5), (1, 0, 0)))

@@ -1,9 +1,9 @@
-// A shape that moves: any of the others, at its place plus a ray's time times a displacement. shapes.h says what a shape
-// answers.
+// A shape that moves: any of the others, at its place plus a ray's time times a displacement. shapes.h says what a
+// shape answers.
 //
-// Whether a ray meets it is asked where it stands still: the ray is brought there instead, see at_rest(), and the answer
-// holds where the ray is, for distances and directions are the same. So a moving shape answers what its body does, and
-// what is known of where rays start holds too.
+// Whether a ray meets it is asked where it stands still: the ray is brought there instead, see at_rest(), and the
+// answer holds where the ray is, for distances and directions are the same. So a moving shape answers what its body
+// does, and what is known of where rays start holds too.
 
 #pragma once
 
@@ -69,9 +69,8 @@ class Moving {
 
     template <bool which_primitive>
     [[gnu::noinline]] bool intersect(const Rays<Real>& rays, Crossing<Real>& crossing, Mask<Real>& close) const {
-        return bodies_.visit(body_, [&](const auto& body) {
-            return body.template intersect<which_primitive>(rays, crossing, close);
-        });
+        return bodies_.visit(
+            body_, [&](const auto& body) { return body.template intersect<which_primitive>(rays, crossing, close); });
     }
     [[gnu::noinline]] bool intersect_by_rules(const Rays<Real>& rays, Crossing<Real>& crossing) const {
         return bodies_.visit(body_, [&](const auto& body) { return body.intersect_by_rules(rays, crossing); });
@@ -85,8 +84,7 @@ class Moving {
     }
     [[gnu::noinline]] SurfacePoint<Real> surface_at(int primitive, const Vector<L>& near, const Rays<Real>& rays,
                                                     Mask<Real> inside) const {
-        return bodies_.visit(body_,
-                             [&](const auto& body) { return body.surface_at(primitive, near, rays, inside); });
+        return bodies_.visit(body_, [&](const auto& body) { return body.surface_at(primitive, near, rays, inside); });
     }
 
     // Those of every time: with primitives that slide in themselves. Which of them are on the body changes, and is not
