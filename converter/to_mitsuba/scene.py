@@ -17,7 +17,7 @@ from converter.to_mitsuba.integrator import Intersections, RayPrecision, integra
 from converter.to_mitsuba.lights import light
 from converter.to_mitsuba.surfaces import exact_surfaces, material_name, shapes
 
-EFFECTS: tuple[Effect, ...] = ("soft shadows", "motion")
+EFFECTS: tuple[Effect, ...] = ("soft shadows", "glossy rays", "depth of field", "motion")
 """What of distributed ray tracing the integrator draws."""
 STILL: tuple[Intersections, ...] = ("mesh", "offset", "ulp")
 """Intersections that use Mitsuba's shapes, which do not move."""

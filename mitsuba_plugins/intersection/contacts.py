@@ -72,8 +72,8 @@ class Contacts:
         return not surface.moves or kind.slides(np.array(surface.move), numbers)
 
     def on_body(self, point: Numbers, contact: Contact) -> Contact | None:
-        """The contact, its normal outward, if the point is on the body, which stands still; None where it is in a plane,
-        beside the face.
+        """The contact, its normal outward, if the point is on the body, and this stands still; None where it is in a face's
+        plane beside the face.
         """
         surface = self._surfaces[contact.object]
         if surface.moves:

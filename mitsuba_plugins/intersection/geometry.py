@@ -60,9 +60,10 @@ class Surface:
         """A box around it wherever it is: around both ends of its way, which is straight."""
         if self.box is None or not self.moves:
             return self.box
-        ends = [tuple(x + way for x, way in zip(corner, self.move, strict=True)) for corner in self.box]
-        low, high = (tuple(map(pick, at, end)) for pick, at, end in zip((min, max), self.box, ends, strict=True))
-        return _roomy(low, high)
+        (a, b, c), (d, e, f) = self.box
+        x, y, z = self.move
+        low = a + min(0.0, x), b + min(0.0, y), c + min(0.0, z)
+        return _roomy(low, (d + max(0.0, x), e + max(0.0, y), f + max(0.0, z)))
 
     @property
     def rows(self) -> list[Row]:

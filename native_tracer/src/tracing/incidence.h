@@ -17,8 +17,8 @@ bool lies_on(const SphereDescription& sphere, const Triple& point);
 bool lies_on(const Quadruple& plane, const Triple& point);
 bool lies_on(const QuadricDescription& quadric, const Triple& point);
 
-// Whether a primitive of a shape, see shapes.h, moved by a displacement lies in itself, as far as decimals can say: then
-// what lies on it does so while it moves.
+// Whether a primitive of a shape, see shapes.h, moved by a displacement lies in itself, as far as decimals can say:
+// then what lies on it does so while it moves.
 bool slides(const SphereDescription& sphere, int piece, const Triple& displacement);
 bool slides(const PolyhedronDescription& polyhedron, int piece, const Triple& displacement);
 bool slides(const QuadricDescription& quadric, int piece, const Triple& displacement);
