@@ -72,12 +72,13 @@ class Contacts:
         return not surface.moves or kind.slides(np.array(surface.move), numbers)
 
     def on_body(self, point: Numbers, contact: Contact) -> Contact | None:
-        """The contact, its normal outward, if the point is on the body, and this stands still; None where it is in a face's
-        plane beside the face.
+        """The contact, its normal outward, if the point is on the body; None in a face's plane beside the face.
+
+        Nor is it said of a body that moves: it may be there at some times only.
         """
         surface = self._surfaces[contact.object]
         if surface.moves:
-            return None  # at some times, and it is not said when
+            return None
         inside = [kind.contains(point, np.array(shape.given, dtype=np.float64)) for kind, shape in surface.shapes]
         if not isinstance(surface.solid, Csg):
             return contact if inside[0] else None
