@@ -357,7 +357,9 @@ def test_rays_of_a_scene_that_stands_still_have_no_time():
 
 
 def test_disagreements_with_single_precision_are_explained():
-    scene, settings = tiles(), replace(FEW, width=160, height=120)
+    ball = Object(0, 0, Sphere((0, 0, 0), 2.5), move=(0.5, 0.3, 0.7))
+    scene = replace(tiles(), pigments=(Checker((1, 1, 1), (0, 0, 0), 0.003),), objects=(ball,))
+    settings = replace(FEW, width=400, height=300)
     renderers = NativeRenderer(), NativeRenderer("float")
     pictures = tuple(np.asarray(each.render(scene, settings).pixels) for each in renderers)
     traces = tuple(lambda pixels, each=each: each.trace_pixels(scene, settings, pixels) for each in renderers)
