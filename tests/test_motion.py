@@ -31,7 +31,9 @@ from converter.scene.model import (
     Texmap,
 )
 from converter.scene.settings import Settings
+from converter.to_mitsuba.load import load_description
 from converter.to_mitsuba.scene import scene_description
+from mitsuba_plugins import set_variant
 from native_tracer.sampler import TIME
 
 GLOW = Finish(1, 0, 0, 1, 0, 0, 0)
@@ -376,6 +378,14 @@ def test_disagreements_with_single_precision_are_explained():
 def test_shapes_of_mitsuba_do_not_move(method):
     with pytest.raises(EffectUnavailable, match=r"object 1 moves, and .*own shapes.*: native, mitsuba-analytic and"):
         drawn(of_matter(), FEW, method)
+
+
+def test_the_integrator_knows_that_shapes_of_mitsuba_do_not_move():
+    made = scene_description(tiles(), FEW, with_shapes=False)
+    made["integrator"]["intersections"] = "mesh"
+    set_variant(VARIANT)
+    with pytest.raises(Exception, match="'geometry' moves objects, and the shapes of 'mesh' stand still"):
+        load_description(made)
 
 
 def test_a_body_that_comes_into_view_and_leaves_the_camera_is_no_oddity():
