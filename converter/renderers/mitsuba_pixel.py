@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from converter.renderers.records import MOST_RAYS, HitRecord, LightRecord, PixelRecord, RayKind, RayRecord
 from mitsuba_plugins.intersection.columns import column
 from mitsuba_plugins.intersection.rays import NOTHING, UPRIGHT, Ray, lanes
-from mitsuba_plugins.sampler import PRIMARY_PATH, Sample
+from mitsuba_plugins.sampler import PRIMARY_PATH
 
 
 def trace_pixels(scene: Any, pixels: Sequence[tuple[int, int]]) -> list[PixelRecord]:
@@ -133,7 +133,7 @@ class _Tracer:
         integrator, count = self._integrator, len(rays)
         ray = rays.ray(integrator.types)
         key, number, path = rays.names()
-        sample = Sample(key, number)
+        sample = integrator.name_sample(key, number)
         # Numbers and no expressions of them: every bounce then runs the same few kernels.
         dr.make_opaque(ray, sample, path)
         hit = integrator.closest(ray, lanes(count))
