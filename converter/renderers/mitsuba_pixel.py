@@ -33,7 +33,7 @@ def trace_pixels(scene: Any, pixels: Sequence[tuple[int, int]]) -> list[PixelRec
         key = integrator.pixel_key(mi.Point2d(column(mi.Float64, columns), column(mi.Float64, rows)))
         number = column(mi.UInt32, np.tile(np.arange(len(offsets)), len(pixels)))
         position = mi.Point2d(column(mi.Float64, x), column(mi.Float64, y))
-        primary = integrator.primary_ray(sensor, position, Sample(key, number))
+        primary = integrator.primary_ray(sensor, position, integrator.name_sample(key, number))
         rays = _Rays.of(primary, (key, number, mi.UInt32(PRIMARY_PATH)), len(x))
         roots = _Tracer(integrator).trees(rays)
     result = []
