@@ -2,6 +2,7 @@
 
 import math
 from contextlib import contextmanager
+from dataclasses import replace
 from typing import Any
 
 import drjit as dr
@@ -93,7 +94,7 @@ class Whitted(mi.SamplingIntegrator):
      * - seed
        - |int|
        - Start of the random numbers, where something is sampled: a light with a radius, a finish with a cone, a sensor
-         with an aperture (Default: 0)
+         with an aperture, an object that moves (Default: 0)
 
      * - points
        - |string|
@@ -152,6 +153,9 @@ class Whitted(mi.SamplingIntegrator):
         if self.intersections == "auto" or (self.intersections == "bvh" and not self.surfaces):  # of nothing, no tree
             size = sum(len(surface.rows) for surface in self.surfaces)
             self.intersections = "analytic" if size <= ANALYTIC_LIMIT else "bvh"
+        self.moves = any(surface.moves for surface in self.surfaces)
+        if self.moves and self.intersections not in ("analytic", "bvh"):
+            raise ValueError(f"whitted: 'geometry' moves objects, and the shapes of '{self.intersections}' stand still")
         self.precision = props.get("precision", "double")
         if self.precision not in ("double", "float"):
             raise ValueError(f"whitted: precision is double or float, not '{self.precision}'")
@@ -198,7 +202,7 @@ class Whitted(mi.SamplingIntegrator):
         self._soft_shadows = self.shadows and bool(self._lights.radii.any())
         self._spreads = self._materials.spread and (self.reflection or self.refraction)
         self._has_lens = getattr(sensor, "has_lens", False)
-        self.sampled = self._soft_shadows or self._spreads or self._has_lens
+        self.sampled = self.moves or self._soft_shadows or self._spreads or self._has_lens
         contacts = Contacts(self.surfaces)
         self._light_contacts = LightContacts(self.types, contacts, self._lights.positions, self._lights.radii)
         on_something = hasattr(sensor, "eye") and not self._has_lens
@@ -219,6 +223,12 @@ class Whitted(mi.SamplingIntegrator):
 
     # ------------------------------------------------------------------ one ray
 
+    def timed(self, ray: Ray, sample) -> Ray:
+        """A ray with the time of its `sample`, which its whole tree has, where anything moves."""
+        if not self.moves:
+            return ray
+        return replace(ray, time=sample.square(self.types.Float, samples.PRIMARY_PATH, samples.TIME)[0])
+
     def closest(self, ray: Ray, active) -> Hit:
         """The first surface that a ray meets."""
         return self._tracer.closest(ray, active)
@@ -226,14 +236,14 @@ class Whitted(mi.SamplingIntegrator):
     def material(self, ray: Ray, hit: Hit):
         """The finish and the pigment's colour at a hit."""
         finish = self._materials.finish(hit.object, hit.valid)
-        return finish, self._materials.color(hit.object, hit.p, self._errors(ray, hit), hit.valid)
+        return finish, self._materials.color(hit.object, hit.place, self._errors(ray, hit), hit.valid)
 
     def _errors(self, ray: Ray, hit: Hit):
         """How far the coordinates of a hit may be off, where a pigment asks."""
         decides = decides_ties(hit.t) and self.intersections not in ("offset", "ulp")
         if not decides or not self._materials.has_edges:
             return self.types.Vector3(0)
-        return coordinate_errors(hit.p, hit.n, ray.d, hit.t, hit.off)
+        return coordinate_errors(hit.place, hit.n, ray.d, hit.t, hit.off)
 
     def light(self, index, ray: Ray, hit: Hit, finish: Finish, color, active, sample, path) -> Illumination:
         """What one light, by its index, adds at a hit of a `sample`'s ray of that path."""
@@ -315,6 +325,7 @@ class Whitted(mi.SamplingIntegrator):
         radiance = dr.zeros(self.types.Color3, width)
         weight = dr.full(self.types.Float, 1, width)
         depth = dr.zeros(mi.UInt32, width)
+        ray = self.timed(ray, sample)
         active = active & lanes(width)
         too_deep = dr.zeros(mi.Bool, width) if self.depth_limited else False
         waiting = dr.zeros(mi.UInt32, width)
@@ -351,7 +362,7 @@ class Whitted(mi.SamplingIntegrator):
                 weight = dr.select(mirrors_first, mirror_weight, through_weight)
                 resumes = ~active & (waiting > 0)
                 waiting -= dr.select(resumes, mi.UInt32(1), 0)
-                waiting_ray, waiting_weight, waiting_depth, waiting_path = stack.read(waiting, resumes)
+                waiting_ray, waiting_weight, waiting_depth, waiting_path = stack.read(waiting, ray.time, resumes)
                 ray = dr.select(resumes, waiting_ray, ray)
                 weight = dr.select(resumes, waiting_weight, weight)
                 depth = dr.select(resumes, waiting_depth, depth)

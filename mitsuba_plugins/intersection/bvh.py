@@ -120,7 +120,7 @@ def _octant(d: Any) -> Any:
 
 def _scale(surfaces: list[Surface]) -> float:
     """A power of two that makes the boxes so large that single precision holds them, and distances to them."""
-    largest = max((abs(x) for s in surfaces if s.box is not None for corner in s.box for x in corner), default=0.0)
+    largest = max((abs(x) for s in surfaces if s.swept is not None for corner in s.swept for x in corner), default=0.0)
     return math.ldexp(1.0, min(-math.frexp(largest)[1], _LARGEST_EXPONENT)) if largest > 0 else 1.0
 
 
@@ -131,9 +131,9 @@ def _nodes(surfaces: list[Surface], scale: float) -> tuple[Any, Any]:
     they reach last, the link, and the object of a leaf, or NOTHING. Unbounded surfaces are leaves before the tree's
     root, with boxes without bounds.
     """
-    bounded = [i for i, surface in enumerate(surfaces) if surface.box is not None]
-    unbounded = [i for i, surface in enumerate(surfaces) if surface.box is None]
-    boxes = np.array([surfaces[i].box for i in bounded], dtype=np.float64).reshape(-1, 2, 3) * scale
+    bounded = [i for i, surface in enumerate(surfaces) if surface.swept is not None]
+    unbounded = [i for i, surface in enumerate(surfaces) if surface.swept is None]
+    boxes = np.array([surfaces[i].swept for i in bounded], dtype=np.float64).reshape(-1, 2, 3) * scale
     tree = threaded_bvh(boxes[:, 0], boxes[:, 1])
     first, count = len(unbounded), len(unbounded) + tree.size
     low = np.full((8, count, 3), -np.inf, dtype=np.float32)
