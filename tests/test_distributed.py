@@ -123,7 +123,7 @@ def without(scene, effects):
 
 
 @pytest.mark.parametrize(
-    "left", ["lens", "cone", "lamp", "lens cone", "lens lamp", "cone lamp", "lens cone lamp"], ids=str
+    "left", ["lens", "shutter", "cone", "lamp", "lens lamp", "cone lamp", "lens shutter cone", "lens shutter cone lamp"]
 )
 def test_effects_that_have_nothing_to_do_with_each_other_multiply(left):
     scene, parts = all_four()
@@ -160,9 +160,17 @@ FROSTED = Scene(
     (Finish(0, 0, 0, 1, 1, 0, 0, cone=8), GLOW),
     (Object(0, 0, Polyhedron(((0, 1, 0, 0),))), Object(1, 1, Polyhedron(((0, 0, -1, 6),)))),
 )
+PASSING = Scene(
+    Camera((0, 0, -10), (0, 0, 0), (0, 1, 0), 20),
+    (1, 1, 1),
+    (),
+    (WHITE,),
+    (GLOW,),
+    (Object(0, 0, Sphere((-2, 0, 0), 1.2), move=(4, 0.5, 0)),),
+)
 
 
-@pytest.mark.parametrize("scene", [SHADOW, BLUR, FROSTED], ids=["lamp", "lens", "cone"])
+@pytest.mark.parametrize("scene", [SHADOW, BLUR, FROSTED, PASSING], ids=["lamp", "lens", "cone", "shutter"])
 def test_at_64_samples_the_error_is_at_most_half_of_that_of_independent_points(scene):
     settings = Settings(width=32, height=24, samples=64, background=(0, 0, 0))
     truth = drawn(scene, replace(settings, samples=4096, seed=1))

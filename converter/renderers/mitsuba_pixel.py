@@ -125,7 +125,7 @@ class _Tracer:
     def _times(self, rays: _Rays) -> list[float | None]:
         """The time of each ray, if it has one."""
         key, number, _ = rays.names()
-        time = self._integrator.timed(rays.ray(self._integrator.types), Sample(key, number)).time
+        time = self._integrator.timed(rays.ray(self._integrator.types), self._integrator.name_sample(key, number)).time
         return [None] * len(rays) if time is None else _list(time, len(rays))
 
     def _follow(self, level: list[RayRecord], rays: _Rays) -> tuple[list[RayRecord], _Rays, list[dict[RayKind, float]]]:
