@@ -402,7 +402,7 @@ def carousel() -> SampledScene:
     s.body(gold, paint, cylinder(0, 0, 1.5, 0, 0.35))
     segments = 20
     for k in range(segments):
-        a, b = (2 * math.pi * (k + e) / segments for e in (0, 1))
+        a, b = (2 * math.pi * (k + e) / segments for e in (-0.5, 0.5))
         wedge = half_spaces([(math.sin(a), 0, -math.cos(a), 0), (-math.sin(b), 0, math.cos(b), 0)])
         s.body((cream, red)[k % 2], paint, csg(f"+ {cone(0, 0, (5.75, 7.6), (3.5, 0.01))}", f"& {wedge}"))
         s.body((teal, gold)[k % 2], paint, csg(f"+ {cylinder(0, 0, 3.55, 5.35, 5.8)}", f"& {wedge}"))
@@ -511,6 +511,8 @@ PICTURE, SAMPLES = (240, 180), 144
 """Size of a picture in pixels, and its rays a pixel."""
 TILE, COLUMNS, GAP = (272, 204), 3, 4
 """Size of a picture on the sheet, how many stand side by side, and the white between them, in pixels."""
+NOISE = 4.0
+"""Of 255 levels."""
 
 
 def generated() -> dict[str, bytes]:
@@ -544,6 +546,14 @@ def sheet(pictures: Sequence[Any]) -> Any:
     return whole
 
 
+def dithered(picture: Any) -> Any:
+    """A picture with a little noise, so that 256 colours leave no steps in its gradients."""
+    import numpy as np
+
+    noise = np.random.default_rng(0).uniform(-NOISE, NOISE, picture.shape[:2])
+    return np.rint(np.clip(picture + noise[..., None], 0, 255))
+
+
 def draw_pictures(names: Sequence[str]) -> None:
     """Draw scenes into pictures/; all of them, and the sheet, if none is named."""
     (FOLDER / "pictures").mkdir(exist_ok=True)
@@ -551,7 +561,7 @@ def draw_pictures(names: Sequence[str]) -> None:
         (FOLDER / "pictures" / f"{name}.png").write_bytes(palette_png(drawn(name, *PICTURE, SAMPLES)))
     if not names:
         tiles = [drawn(name, *TILE, SAMPLES) for name in SCENES]
-        (FOLDER / "pictures" / "sheet.png").write_bytes(palette_png(sheet(tiles)))
+        (FOLDER / "pictures" / "sheet.png").write_bytes(palette_png(dithered(sheet(tiles))))
 
 
 def main() -> None:
