@@ -558,7 +558,7 @@ def draw_pictures(names: Sequence[str]) -> None:
     """Draw scenes into pictures/; all of them, and the sheet, if none is named."""
     (FOLDER / "pictures").mkdir(exist_ok=True)
     for name in names or SCENES:
-        (FOLDER / "pictures" / f"{name}.png").write_bytes(palette_png(drawn(name, *PICTURE, SAMPLES)))
+        (FOLDER / "pictures" / f"{name}.png").write_bytes(palette_png(dithered(drawn(name, *PICTURE, SAMPLES))))
     if not names:
         tiles = [drawn(name, *TILE, SAMPLES) for name in SCENES]
         (FOLDER / "pictures" / "sheet.png").write_bytes(palette_png(dithered(sheet(tiles))))

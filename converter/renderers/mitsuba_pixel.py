@@ -146,8 +146,8 @@ class _Tracer:
         dr.make_opaque(hit)
         finish, pigment = integrator.material(ray, hit)
         dr.make_opaque(finish, pigment)
-        through, total = integrator.transmitted(ray, hit, finish, sample, path)
-        mirrored = integrator.reflected(ray, hit, finish, sample, path)
+        through, total = integrator.transmitted(ray, hit, finish, sample, path, hit.valid)
+        mirrored = integrator.reflected(ray, hit, finish, sample, path, hit.valid)
         depth = level[0].depth + 1
         throughput = column(integrator.types.Float, [record.throughput for record in level])
         mirror_throughput, mirrors, through_throughput, refracts = integrator.followed(

@@ -280,36 +280,38 @@ class Whitted(mi.SamplingIntegrator):
         cosine = dr.dot(n, unit(to_light - ray.d)) if self._materials.blinn else dr.dot(reflect(ray.d, n), to_light)
         return power(dr.minimum(dr.maximum(cosine, 0), 1), alpha)  # what is rounded above 1 has no bounds
 
-    def reflected(self, ray: Ray, hit: Hit, finish: Finish, sample, path) -> Ray:
+    def reflected(self, ray: Ray, hit: Hit, finish: Finish, sample, path, active) -> Ray:
         """The ray that follows a `sample`'s ray of that path in the mirror direction."""
-        spread = mirrored_spread(ray, hit)
-        return self._spawn(hit, reflect(ray.d, hit.n), hit.inside, spread, finish, sample, path, samples.MIRRORED_CONE)
+        d, spread = reflect(ray.d, hit.n), mirrored_spread(ray, hit)
+        if self._spreads:
+            d, spread = self._in_cone(d, spread, hit, hit.inside, finish, sample, path, samples.MIRRORED_CONE, active)
+        return self._tracer.spawn(hit, d, hit.inside, spread)
 
-    def transmitted(self, ray: Ray, hit: Hit, finish: Finish, sample, path) -> tuple[Ray, Any]:
+    def transmitted(self, ray: Ray, hit: Hit, finish: Finish, sample, path, active) -> tuple[Ray, Any]:
         """The refracted ray, or the mirrored one past the critical angle, and whether it is past."""
         eta = dr.select(hit.inside, quotient(1, finish.eta), finish.eta)
         n = dr.select(hit.inside, -hit.n, hit.n)
         d, total, spread = refract(ray.d, n, eta, dr.minimum(ray.spread + hit.lean, most_blur(ray.spread)))
         spread = dr.select(total, mirrored_spread(ray, hit), spread)
         inside = hit.inside == total
-        return self._spawn(hit, d, inside, spread, finish, sample, path, samples.REFRACTED_CONE), total
-
-    def _spawn(self, hit: Hit, d, inside, spread, finish: Finish, sample, path, use) -> Ray:
-        """The ray that leaves a hit in direction `d`, or uniform in the cone about it, where the finish has one.
-
-        A direction in the cone that leads to the other side of the tangent plane is mirrored in that.
-        """
         if self._spreads:
+            d, spread = self._in_cone(d, spread, hit, inside, finish, sample, path, samples.REFRACTED_CONE, active)
+        return self._tracer.spawn(hit, d, inside, spread), total
+
+    @dr.syntax
+    def _in_cone(self, d, spread, hit: Hit, inside, finish: Finish, sample, path, use, active):
+        """A direction that is uniform in the cone about `d`, where the finish has one, and how far it may be off.
+
+        One that leads to the other side of the tangent plane is mirrored in that.
+        """
+        if active & (finish.versine > 0):
             square = sample.square(self.types.Float, path, use)
-            direction = samples.cone_direction(d, finish.versine, *square)
+            d = samples.cone_direction(d, finish.versine, *square)
             n = dr.select(inside, -hit.n, hit.n)
-            direction = unit(direction - n * (2 * dr.minimum(dr.dot(n, direction), 0)))
-            spreads = finish.versine > 0
-            d = dr.select(spreads, direction, d)
+            d = unit(d - n * (2 * dr.minimum(dr.dot(n, d), 0)))
             # By eight times at most do the frame's axes turn faster than its axis.
-            more = dr.minimum(8 * spread + 2 * hit.lean, most_blur(spread))
-            spread = dr.select(spreads, more, spread)
-        return self._tracer.spawn(hit, d, inside, spread)
+            spread = dr.minimum(8 * spread + 2 * hit.lean, most_blur(spread))
+        return d, spread
 
     # ------------------------------------------------------------------ the ray tree
 
@@ -344,8 +346,8 @@ class Whitted(mi.SamplingIntegrator):
                 too_deep |= hit.valid & (depth > self.max_depth) & (heavier > 0) & (heavier >= self.cutoff)
             active = mirrors | refracts
             if dr.hint(self.branching, mode="scalar"):
-                through = self.transmitted(ray, hit, finish, sample, path)[0]
-                mirrored = self.reflected(ray, hit, finish, sample, path)
+                through = self.transmitted(ray, hit, finish, sample, path, refracts)[0]
+                mirrored = self.reflected(ray, hit, finish, sample, path, mirrors)
                 pushes = mirrors & refracts
                 # The lighter one first, which has the smaller tree below it: so few rays wait.
                 mirrors_first = mirrors & ~(refracts & (finish.kt < finish.kr))
@@ -371,18 +373,18 @@ class Whitted(mi.SamplingIntegrator):
                 active |= resumes
             elif dr.hint(self.reflection and self.refraction, mode="scalar"):
                 weight = dr.select(mirrors, mirror_weight, through_weight)
-                through = self.transmitted(ray, hit, finish, sample, path)[0]
-                ray = dr.select(mirrors, self.reflected(ray, hit, finish, sample, path), through)
+                through = self.transmitted(ray, hit, finish, sample, path, refracts)[0]
+                ray = dr.select(mirrors, self.reflected(ray, hit, finish, sample, path, mirrors), through)
                 if dr.hint(self.sampled, mode="scalar"):
                     path = 2 * path + dr.select(mirrors, mi.UInt32(0), 1)
             elif dr.hint(self.reflection, mode="scalar"):
                 weight = mirror_weight
-                ray = self.reflected(ray, hit, finish, sample, path)
+                ray = self.reflected(ray, hit, finish, sample, path, mirrors)
                 if dr.hint(self.sampled, mode="scalar"):
                     path = 2 * path
             elif dr.hint(self.refraction, mode="scalar"):
                 weight = through_weight
-                ray = self.transmitted(ray, hit, finish, sample, path)[0]
+                ray = self.transmitted(ray, hit, finish, sample, path, refracts)[0]
                 if dr.hint(self.sampled, mode="scalar"):
                     path = 2 * path + 1
         return radiance, too_deep

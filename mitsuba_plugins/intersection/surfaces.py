@@ -9,7 +9,7 @@ from mitsuba_plugins.intersection.contacts import LightContacts
 from mitsuba_plugins.intersection.primitives import Primitives
 from mitsuba_plugins.intersection.rays import NOTHING, Hit, Ray, largest, origin_error, shadow_spread, spawn
 from mitsuba_plugins.intersection.rounding import decides_ties, most_blur
-from mitsuba_plugins.intersection.ties import Ties
+from mitsuba_plugins.intersection.ties import AllObjects, Candidates, Ties
 
 
 class ExactSurfaces:
@@ -18,10 +18,11 @@ class ExactSurfaces:
     Masks of active rays come from `lanes`.
     """
 
-    def __init__(self, primitives: Primitives, contacts: LightContacts) -> None:
+    def __init__(self, primitives: Primitives, contacts: LightContacts, candidates: Candidates | None = None) -> None:
+        """Look for ties among `candidates`, or all objects."""
         self.primitives = primitives
         self.contacts = contacts
-        self._ties = Ties(primitives, contacts)
+        self._ties = Ties(primitives, contacts, candidates or AllObjects(primitives.object_count))
 
     def closest(self, ray: Ray, active: Any) -> Hit:
         """The first surface that a ray meets, the point moved onto it to shed the error along the normal."""
