@@ -20,7 +20,7 @@ def tree():
     from mitsuba_plugins.intersection.rays import real
 
     boxes = [((x, y, z), (x + 1, y + 1, z + 1)) for x, y, z in CORNERS]
-    return BoxTree(real("double"), [SimpleNamespace(box=box) for box in [None, *boxes]])
+    return BoxTree(real("double"), [SimpleNamespace(swept=box) for box in [None, *boxes]])
 
 
 def candidates(tree, origins, directions, ties, distance=np.inf, skipped=0xFFFFFFFF):
