@@ -459,8 +459,8 @@ def pinball() -> SampledScene:
     bulb = s.finish("2.4 0 0 1 0 0 0", "a bulb")
     field = s.finish("0.16 0.44 0.2 30 0.30 0 0 4", "the playfield")
     steel = s.finish("0.24 0.30 1 40 0.62 0 0 3", "steel")
-    gloss = s.finish("0.26 0.62 0.5 80 0.10 0 0")
-    glass = s.finish("0.06 0.10 0.6 90 0.10 0.76 1.5 3", "a frosted cap")
+    gloss = s.finish("0.28 0.64 0.5 80 0 0 0")
+    glass = s.finish("0.10 0.12 0.6 90 0 0.76 1.5 3", "a frosted cap")
     s.polyhedron(s.pigment("checker 0.10 0.16 0.36 0.12 0.24 0.46 1.3"), field, [top(0)])
     bodies = [(0.90, 0.22, 0.22), (0.98, 0.66, 0.14), (0.16, 0.62, 0.56), (0.72, 0.30, 0.66)]
     places = [

@@ -8,13 +8,15 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from converter.files import shown_name
-from converter.studies.chart_figure import COLUMN, ERROR_ROW, MARK, NAME, STYLES, machine_line, save
+from converter.studies.chart_figure import MARK, NAME, STYLES, machine_line, save
 from converter.studies.convergence import ConvergenceStudy, Curve, Point
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
+COLUMN, ROW = 5.0, 3.4
+"""Inches: a panel's width and height."""
 LINES = ("-", "--", ":", "-.")
 """Curves of one renderer differ by their lines."""
 SLOPES = (0.5, 0.75)
@@ -35,7 +37,7 @@ def convergence_chart(studies: Sequence[ConvergenceStudy]) -> "Figure":
     """The chart as a matplotlib figure."""
     from matplotlib.figure import Figure
 
-    figure = Figure((COLUMN * len(studies), 2 * ERROR_ROW + 0.9), layout="constrained")
+    figure = Figure((COLUMN * len(studies), 2 * ROW + 0.9), layout="constrained")
     grid = figure.subplots(2, len(studies), squeeze=False)
     for study, (over_time, over_samples) in zip(studies, grid.T, strict=True):
         over_time.set_title(_title(study), fontsize=9)
@@ -79,7 +81,7 @@ def _draw_curves(axes: "Axes", study: ConvergenceStudy, place: Callable[[Point],
     axes.set_xscale("log")
     axes.set_yscale("log")
     if errors:
-        axes.set_ylim(min(*errors, study.truth.error) / 1.6, max(errors) * 1.6)
+        axes.set_ylim(min(*errors, study.truth.error) / 1.6, max(errors) * 6)  # with room for the names
     axes.xaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
     axes.xaxis.set_minor_formatter(NullFormatter())
     if place(Point(7, 1.0, [0.0])) == 7:
