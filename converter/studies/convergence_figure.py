@@ -40,7 +40,7 @@ def convergence_chart(studies: Sequence[ConvergenceStudy]) -> "Figure":
     figure = Figure((COLUMN * len(studies), 2 * ROW + 0.9), layout="constrained")
     grid = figure.subplots(2, len(studies), squeeze=False)
     for study, (over_time, over_samples) in zip(studies, grid.T, strict=True):
-        over_time.set_title(_title(study), fontsize=9)
+        over_time.set_title(_title(study), fontsize=8)
         _draw_curves(over_time, study, lambda point: point.warm)
         over_time.set_xlabel("seconds", fontsize=8)
         _draw_slopes(over_samples, study)
@@ -52,8 +52,8 @@ def convergence_chart(studies: Sequence[ConvergenceStudy]) -> "Figure":
 
 def _title(study: ConvergenceStudy) -> str:
     size = f"{study.settings.width} x {study.settings.height} pixels"
-    truth = f"native, the mean of two pictures of {study.truth.samples} samples with other seeds"
-    return f"{shown_name(study.file.name)}, {size}\nerrors against {truth}"
+    truth = f"two pictures of {study.truth.samples} samples, other seeds"
+    return f"{shown_name(study.file.name)}, {size}\nerrors against native, the mean of {truth}"
 
 
 def _draw_curves(axes: "Axes", study: ConvergenceStudy, place: Callable[[Point], float]) -> None:
@@ -100,11 +100,12 @@ def _draw_slopes(axes: "Axes", study: ConvergenceStudy) -> None:
     if not firsts:
         return
     most = max(point.samples for curve in study.drawn for point in curve.points)
-    samples = np.array([1.0, most**0.3, most])
-    for slope in SLOPES:
+    samples = np.array([1.0, most**0.8, most])
+    for slope, side in zip(SLOPES, ("bottom", "top"), strict=True):
         error = max(point.rms for point in firsts) * samples**-slope
         axes.plot(samples, error, "-", color="0.8", lw=2.5, zorder=0.5)
-        axes.text(samples[1], 1.05 * error[1], f"$n^{{-{slope:g}}}$", fontsize=8, color="0.45")
+        away = 1.12 if side == "bottom" else 1 / 1.12
+        axes.text(samples[1], away * error[1], f"$n^{{-{slope:g}}}$", fontsize=8, color="0.45", va=side, ha="center")
 
 
 def _name(curve: Curve) -> str:
