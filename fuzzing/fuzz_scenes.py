@@ -99,7 +99,7 @@ def mutate(data: bytes, most: int, seed: int) -> bytes:
     for _ in range(rng.randint(1, 4)):
         at = rng.randrange(len(words))
         end = min(len(words), at + rng.choice((1, 1, 2, 10)))
-        match rng.randrange(5):
+        match rng.randrange(6):
             case 0:
                 words[at] = rng.choice(WORDS)
             case 1:
@@ -108,6 +108,11 @@ def mutate(data: bytes, most: int, seed: int) -> bytes:
                 del words[at:end]
             case 3:
                 words[at:at] = words[at:end] * rng.choice((1, 2, 30))
+            case 4:  # the optional numbers at the end of a line: a radius, a cone, a lens, a displacement
+                ends = [i for i, word in enumerate(words) if b"\n" in word] or [len(words)]
+                more = rng.choice(([], [b"move"])) + rng.choices(NUMBERS, k=rng.choice((1, 2, 3)))
+                end = rng.choice(ends)
+                words[end:end] = [b" ", b" ".join(more)]
             case _:
                 start = rng.randrange(len(words))
                 words[at:at] = words[start : start + end - at]

@@ -82,6 +82,15 @@ def _sobol_reversed(index: Any) -> Any:
     return index
 
 
+def make_independent(pixel: Any, k: Any) -> tuple[Any, Any]:
+    """What names sample `k` of a pixel where the points of one pixel are to be independent of each other, too.
+
+    Each sample is named like a pixel of its own, and has the first point of its sequence. Only to measure what
+    stratification is worth.
+    """
+    return combine(pixel, k), k & 0
+
+
 @dataclass
 class Sample:
     """One sample of each pixel (UInt32): the pixel's key, and the sample's number."""

@@ -121,6 +121,7 @@ def render(
     max_depth: int,
     samples: int = 1,
     seed: int = 0,
+    independent: bool = False,
     corner: bool = True,
     blinn: bool = False,
     precision: Literal["float", "double", "long double"] = "double",
@@ -148,6 +149,7 @@ def trace_pixel(
     max_depth: int,
     samples: int = 1,
     seed: int = 0,
+    independent: bool = False,
     corner: bool = True,
     blinn: bool = False,
     precision: Literal["float", "double", "long double"] = "double",
@@ -178,7 +180,9 @@ def surfaces_at(point: _Triple, rows: Buffer, round: Buffer) -> list[int]:
 def within(point: _Triple, planes: Buffer) -> bool:
     """Whether a point lies in a body or on its surface; see `native_tracer.incidence`."""
 
-def sample_points(seed: int, column: Buffer, row: Buffer, k: Buffer, path: Buffer, use: Buffer) -> memoryview[int]:
+def sample_points(
+    seed: int, column: Buffer, row: Buffer, k: Buffer, path: Buffer, use: Buffer, independent: bool = False
+) -> memoryview[int]:
     """The points of samples; see `native_tracer.sampler`."""
 
 def disc_points(points: Buffer) -> memoryview[float]:

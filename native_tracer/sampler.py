@@ -19,7 +19,13 @@ LENS, TIME, MIRRORED_CONE, REFRACTED_CONE, FIRST_LIGHT = range(5)
 
 
 def sample_points(
-    seed: int, column: ArrayLike, row: ArrayLike, k: ArrayLike, path: ArrayLike, use: ArrayLike
+    seed: int,
+    column: ArrayLike,
+    row: ArrayLike,
+    k: ArrayLike,
+    path: ArrayLike,
+    use: ArrayLike,
+    independent: bool = False,
 ) -> NDArray[np.uint32]:
     """The point, (n, 2), of sample `k` of each pixel, for a `use` and the ray `path` of its tree.
 
@@ -31,6 +37,7 @@ def sample_points(
         path: 1 for a tree's primary ray, 2 p for the ray mirrored after path p, 2 p + 1 for the one transmitted there,
             modulo 2^32.
         use: one of the uses above.
+        independent: those that measure what stratification is worth: each sample's is independent of all others.
 
     Raises:
         ValueError: the shapes do not fit.
@@ -38,7 +45,8 @@ def sample_points(
 
     """
     words = np.broadcast_arrays(*(np.atleast_1d(np.asarray(given, np.uint32)) for given in (column, row, k, path, use)))
-    return np.asarray(_core.sample_points(seed, *(np.ascontiguousarray(word).data for word in words)))
+    at, down, number, of_ray, what = (np.ascontiguousarray(word).data for word in words)
+    return np.asarray(_core.sample_points(seed, at, down, number, of_ray, what, independent))
 
 
 def disc_points(points: ArrayLike) -> NDArray[np.float64]:

@@ -263,10 +263,37 @@ def letter() -> bytes:
     return ppm([ink if mark == "#" else paper for mark in row] for row in rows)
 
 
+DIGITS = {
+    "1": "..#.. .##.. #.#.. ..#.. ..#.. ..#.. #####",
+    "4": "...#. ..##. .#.#. #..#. ##### ...#. ...#.",
+    "8": ".###. #...# #...# .###. #...# #...# .###.",
+    "9": ".###. #...# #...# .#### ....# ...#. .##..",
+}
+
+
+def pool() -> bytes:
+    """The fronts of four balls of pool, side by side: 1, 4, 8, and 9, which is striped."""
+    size = 60
+    colors = {"1": (0.97, 0.74, 0.10), "4": (0.40, 0.16, 0.52), "8": (0.05, 0.05, 0.06), "9": (0.97, 0.74, 0.10)}
+    ivory = (0.96, 0.94, 0.88)
+
+    def color(column: int, row: int) -> Color:
+        digit = "1489"[column // size]
+        x, y = 2 * (column % size + 0.5) / size - 1, 2 * (row + 0.5) / size - 1
+        if math.hypot(x, y) < 0.42:
+            across, down = math.floor(x / 0.10 + 2.5), math.floor(y / 0.075 + 3.5)
+            inked = 0 <= across < 5 and 0 <= down < 7 and DIGITS[digit].split()[down][across] == "#"
+            return (0.06, 0.06, 0.07) if inked else ivory
+        return ivory if digit == "9" and abs(y) > 0.58 else colors[digit]
+
+    return ppm([color(column, row) for column in range(4 * size)] for row in range(size))
+
+
 TEXTURES: dict[str, Callable[[], bytes]] = {
     "ladder/letter.ppm": letter,
     "rainbow1.ppm": rainbow1,
     "textures/azulejo.ppm": azulejo,
+    "textures/pool.ppm": pool,
     "textures/room.ppm": room,
     "textures/skies.ppm": skies,
     "textures/softboxes.ppm": softboxes,

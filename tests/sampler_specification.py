@@ -52,9 +52,11 @@ def sobol(index):
     return x, y
 
 
-def sample_points(seed, column, row, k, path, use):
+def sample_points(seed, column, row, k, path, use, independent=False):
     column, row, k, path, use = words(column, row, k, path, use)
     pixel = low_bias(WORD(seed) ^ low_bias(column + (row << WORD(16))))
+    if independent:
+        pixel, k = low_bias(pixel ^ low_bias(k)), np.zeros_like(k)
     key = low_bias(low_bias(pixel ^ low_bias(path)) ^ low_bias(use))
     x, y = sobol(nested_uniform_scramble(k, key))
     x = nested_uniform_scramble(x, low_bias(key))

@@ -134,12 +134,13 @@ def test_a_method_with_other_settings():
 @pytest.mark.parametrize(
     ("name", "told"),
     [
-        ("native:depth=1", "native has no setting 'depth': expected max_depth, cutoff, threads"),
-        ("native:", "native has no setting '': expected max_depth, cutoff, threads"),
+        ("native:depth=1", "native has no setting 'depth': expected max_depth, cutoff, threads, points"),
+        ("native:", "native has no setting '': expected max_depth, cutoff, threads, points"),
         ("native:max_depth", "max_depth must be a whole number from 0 to 1000, found ''"),
         ("native:max_depth=-1", "max_depth must be a whole number from 0 to 1000, found '-1'"),
         ("native:threads=0", "threads must be a whole number from 1 to 1024, found '0'"),
         ("native:cutoff=1/0", "cutoff must be a number or a fraction from 0 on, found '1/0'"),
+        ("native:points=random", "points must be stratified or independent, found 'random'"),
         ("native:cutoff=nan", "cutoff must be a number or a fraction from 0 on, found 'nan'"),
         ("nativ:cutoff=0", "there is no method 'nativ' (did you mean 'native'?)"),
     ],

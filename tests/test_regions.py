@@ -10,6 +10,7 @@ from variant import VARIANT
 
 from converter.analysis.regions.warnings import REGIONS, method_warnings, region_warnings
 from converter.commands.main import main
+from converter.renderers.base import RendererUnavailable
 from converter.renderers.methods import METHODS
 from converter.scene.model import Checker, Csg, Finish, Operand, Polyhedron, Quadric, Texmap
 from converter.scene.parser import load_scene
@@ -339,7 +340,7 @@ class Here:
     def render(self, method, variant, scene, settings, seconds):
         try:
             return np.asarray(METHODS[method].renderer(VARIANT).render(scene, settings).pixels)
-        except ValueError as error:  # of nothing there is no mesh
+        except (RendererUnavailable, ValueError) as error:  # of nothing there is no mesh, nor of what moves
             raise DrawingFailed(str(error)) from error
 
 

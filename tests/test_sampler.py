@@ -31,10 +31,13 @@ def plugin(mi):
         double = type(mi.Float64(0))
 
         @staticmethod
-        def points(seed, *words):
+        def points(seed, *words, independent=False):
             words = [mi.UInt32(word) for word in np.broadcast_arrays(*map(np.atleast_1d, words))]
             column, row, k, path, use = words
-            point = made.sample_point(made.pixel_key(mi.UInt32(seed), column, row), k, path, use)
+            pixel = made.pixel_key(mi.UInt32(seed), column, row)
+            if independent:
+                pixel, k = made.make_independent(pixel, k)
+            point = made.sample_point(pixel, k, path, use)
             return np.stack([np.asarray(part) for part in point], axis=-1)
 
         @classmethod
@@ -58,12 +61,12 @@ def plugin(mi):
 # ---- The same numbers everywhere
 
 
-@pytest.mark.parametrize("seed", [0, 4294967295])
-def test_a_million_points_are_the_same_in_both_renderers_and_the_specification(plugin, seed):
+@pytest.mark.parametrize(("seed", "independent"), [(0, False), (4294967295, False), (7, True)])
+def test_a_million_points_are_the_same_in_both_renderers_and_the_specification(plugin, seed, independent):
     words = random_words(MILLION // 2)
-    native = sampler.sample_points(seed, *words)
-    assert (native == plugin.points(seed, *words)).all()
-    assert (native == specification.sample_points(seed, *words)).all()
+    native = sampler.sample_points(seed, *words, independent=independent)
+    assert (native == plugin.points(seed, *words, independent=independent)).all()
+    assert (native == specification.sample_points(seed, *words, independent=independent)).all()
 
 
 def axes(count):
@@ -160,6 +163,11 @@ def test_the_discrepancy_is_far_below_that_of_independent_points(count, gain):
     ours = np.mean([star_discrepancy(points) for points in made])
     independent = np.mean([star_discrepancy(generator.random((count, 2))) for _ in range(40)])
     assert ours * gain < independent
+    hashed = [
+        specification.unit_square(sampler.sample_points(0, pixel, 0, np.arange(count), 1, 0, True)).T.astype(float)
+        for pixel in range(40)
+    ]
+    assert np.mean([star_discrepancy(points) for points in hashed]) == pytest.approx(independent, rel=0.15)
 
 
 def owen_scramble(x, key):
@@ -239,11 +247,22 @@ def test_points_of_different_seeds_pixels_uses_and_rays_are_independent(other):
             assert abs(chi_squared(a ^ b, a)) < 4.5
 
 
+@pytest.mark.parametrize("independent", [False, True])
 @pytest.mark.parametrize("k", [0, 1, 2, 3, 15, 255])
-def test_each_sample_is_uniform_over_pixels(k):
-    points = sampler.sample_points(7, COLUMNS, ROWS, k, 1, sampler.LENS)
+def test_each_sample_is_uniform_over_pixels(k, independent):
+    points = sampler.sample_points(7, COLUMNS, ROWS, k, 1, sampler.LENS, independent)
     assert abs(chi_squared(points[:, 0], points[:, 1])) < 4.5
     assert abs(chi_squared(points[:, 0] << np.uint32(8), points[:, 1] << np.uint32(8))) < 4.5
+
+
+@pytest.mark.parametrize("k", [1, 2, 3, 64])
+def test_samples_of_a_pixel_are_independent_where_that_is_asked_for(k):
+    first = sampler.sample_points(7, COLUMNS, ROWS, 0, 1, sampler.LENS, independent=True)
+    second = sampler.sample_points(7, COLUMNS, ROWS, k, 1, sampler.LENS, independent=True)
+    for a in first.T:
+        for b in second.T:
+            assert abs(chi_squared(a, b)) < 4.5
+            assert abs(chi_squared(a ^ b, a)) < 4.5
 
 
 @pytest.mark.parametrize("count", [4, 16])

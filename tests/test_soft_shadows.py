@@ -10,7 +10,7 @@ from variant import VARIANT
 
 from converter.analysis.notices import scene_notices
 from converter.compare.metrics import LIMIT
-from converter.renderers.methods import METHODS
+from converter.renderers.methods import METHODS, find_method
 from converter.renderers.native import NativeRenderer
 from converter.scene.model import Camera, Finish, Light, Object, Polyhedron, Scene, Solid, Sphere
 from converter.scene.settings import Settings
@@ -262,6 +262,16 @@ def test_both_renderers_draw_the_same_noise(method, made, samples):
     difference = np.abs(drawn(made(), settings, native) - drawn(made(), settings, mitsuba)).max(axis=2)
     assert (difference > LIMIT).sum() == 0
     assert np.median(difference) < 1e-6
+
+
+def test_both_renderers_draw_the_same_noise_of_independent_points():
+    settings = replace(FEW, width=64, height=48, samples=16)
+    native, mitsuba, stratified = (
+        drawn(glass(), method.settings(settings), method.renderer(VARIANT))
+        for method in map(find_method, ("native:points=independent", "mitsuba-analytic:points=independent", "native"))
+    )
+    assert np.abs(native - mitsuba).max() < LIMIT
+    assert np.abs(native - stratified).max() > 10 * LIMIT
 
 
 @pytest.mark.parametrize("method", ["native", "mitsuba-analytic"])

@@ -1,8 +1,10 @@
 """`whitted chart`: the error of every method against its time, as a picture, a table, CSV and JSON."""
 
 import argparse
+from collections.abc import Callable, Sequence
+from dataclasses import replace
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 from converter.commands.exits import OK, UsageError
 from converter.commands.method_options import add_variant, check_variant, method_named
@@ -14,6 +16,7 @@ if TYPE_CHECKING:
     from converter.renderers.methods import Method
     from converter.scene.model import Scene
     from converter.scene.settings import Settings
+    from converter.studies.convergence import ConvergenceStudy
     from converter.studies.measure import SceneStudy
 
 
@@ -24,7 +27,10 @@ def parser() -> Parser:
         "SCENE... -o FILE [options]",
         "Draws each scene by every method, several times in turns, and draws error against time: a mark a method, the\n"
         "front of those that nothing beats, and whole processes below. Errors are against the native tracer in long\n"
-        "double, with no cut-off and 64 bounces, or as near to that as can be afforded.",
+        "double, with no cut-off and 64 bounces, or as near to that as can be afforded.\n\n"
+        "Of scenes that are sampled it draws how the error falls with the number of samples, up to 1024 or --samples,\n"
+        "and with the time they take: a curve a method, with how fast it falls. Errors are against the native tracer\n"
+        "with more samples of other seeds.",
         "whitted chart scenes/figure1.in -o chart.svg --csv chart.csv",
     )
     result.add_argument("scenes", type=Path, nargs="+", metavar="SCENE", help="scene files, a column of the chart each")
@@ -36,13 +42,15 @@ def parser() -> Parser:
         metavar="FILE",
         help="the chart, .svg or .png; - is the standard output, as SVG",
     )
-    result.add_argument("--size", type=size, default="800x600", metavar="WxH", help="of the pictures (%(default)s)")
+    result.add_argument(
+        "--size", type=size, metavar="WxH", help="of the pictures (800x600, and 160x120 where scenes are sampled)"
+    )
     group = result.add_argument_group("what is measured; `whitted methods` lists the methods")
     group.add_argument(
         "--methods",
         type=_methods,
         metavar="NAME,...|all",
-        help="the methods (all)",
+        help="the methods (all; for sampled scenes native, native:points=independent, mitsuba)",
     )
     group.add_argument("--vs", choices=("povray",), help="with POV-Ray as well, which has to be installed")
     group.add_argument(
@@ -92,33 +100,96 @@ def run(arguments: argparse.Namespace) -> int:
     ending = chart_ending(arguments.out)
     methods = _chosen(arguments)
     check_variant(arguments, methods)
-    arguments.width, arguments.height = arguments.size
     settings = settings_from(arguments)
     for file in (arguments.out, arguments.csv):
         if file is not None:
             check_target(file, arguments.scenes)
     check_json(arguments.json, arguments.scenes)
     scenes = _read(arguments, settings)
-    studies = _measure(arguments, scenes, settings, methods)
-
-    from converter.studies.chart_figure import draw_chart
-    from converter.studies.chart_report import to_csv, to_json
+    kind = _sampled() if _are_sampled(scenes, settings) else _plain()
+    width, height = arguments.size or kind.size
+    settings = replace(settings, width=width, height=height)
+    studies = _measure(arguments, scenes, settings, kind)
 
     with replacing(arguments.out, ending) as temporary:
-        draw_chart(studies, temporary)
+        kind.draw(studies, temporary)
     if arguments.csv is not None:
-        write_text(arguments.csv, to_csv(studies))
+        write_text(arguments.csv, kind.to_csv(studies))
     if STANDARD_OUTPUT not in (arguments.csv, arguments.json):
         for study in studies:
-            _print(study)
-    write_json(arguments.json, to_json(studies))
+            kind.show(study)
+    write_json(arguments.json, kind.to_json(studies))
     return OK
 
 
-def _chosen(arguments: argparse.Namespace) -> "list[Method]":
+class _Kind(NamedTuple):
+    """A kind of chart: what it is of, where nobody says so, and what makes it."""
+
+    size: tuple[int, int]
+    methods: "Sequence[Method]"
+    measure: Callable[..., Any]
+    draw: Callable[[list[Any], Path], None]
+    to_csv: Callable[[list[Any]], str]
+    to_json: Callable[[list[Any]], dict[str, Any]]
+    show: Callable[[Any], None]
+    left_out: Callable[[Any], list[str]]
+
+
+def _plain() -> _Kind:
+    from converter.studies import chart_report as report
+    from converter.studies.chart_figure import draw_chart
+    from converter.studies.measure import measure_scene
+
+    return _Kind(
+        (800, 600),
+        _usual_methods(),
+        measure_scene,
+        draw_chart,
+        report.to_csv,
+        report.to_json,
+        _print,
+        report.left_out_methods,
+    )
+
+
+def _sampled() -> _Kind:
+    from converter.studies import convergence_report as report
+    from converter.studies.convergence import default_methods, measure_convergence
+    from converter.studies.convergence_figure import draw_convergence
+
+    return _Kind(
+        (160, 120),
+        default_methods(),
+        measure_convergence,
+        draw_convergence,
+        report.to_csv,
+        report.to_json,
+        _print_convergence,
+        report.left_out_methods,
+    )
+
+
+def _are_sampled(scenes: "list[tuple[Path, Scene]]", settings: "Settings") -> bool:
+    """Whether all are, or none is."""
+    from converter.scene.needs import scene_needs
+
+    sampled = {scene_needs(scene, settings).sampled: file for file, scene in scenes}
+    if len(sampled) > 1:
+        raise UsageError(f"{sampled[True]} is sampled and {sampled[False]} is not: these need a chart each")
+    return True in sampled
+
+
+def _usual_methods() -> "list[Method]":
     from converter.renderers.methods import METHODS
 
-    methods = arguments.methods or [method for method in METHODS.values() if method.usual]
+    return [method for method in METHODS.values() if method.usual]
+
+
+def _chosen(arguments: argparse.Namespace, usual: "Sequence[Method] | None" = None) -> "list[Method]":
+    """What the arguments name, or what is `usual`; and what it is compared with."""
+    from converter.renderers.methods import METHODS
+
+    methods = arguments.methods or usual or _usual_methods()
     if arguments.vs is not None:
         versus = METHODS[arguments.vs]
         if reason := versus.missing():
@@ -133,6 +204,8 @@ def _read(arguments: argparse.Namespace, settings: "Settings") -> "list[tuple[Pa
     """All scenes, before the first is drawn, so that no one waits for a mistake in the last."""
     from converter.commands.notes import load_with_notices
 
+    # No notice of how many samples are drawn: these charts draw several numbers.
+    settings = replace(settings, samples=settings.samples or 1)
     return [(file, load_with_notices(file, settings, arguments.quiet)) for file in arguments.scenes]
 
 
@@ -140,24 +213,23 @@ def _measure(
     arguments: argparse.Namespace,
     scenes: "list[tuple[Path, Scene]]",
     settings: "Settings",
-    methods: "list[Method]",
-) -> "list[SceneStudy]":
+    kind: _Kind,
+) -> list[Any]:
     from converter.commands.progress import ProgressBar
-    from converter.studies.chart_report import left_out_methods
-    from converter.studies.measure import measure_scene
 
     variant = arguments.variant or "llvm_ad_rgb"
-    studies: list[SceneStudy] = []
+    methods = _chosen(arguments, kind.methods)
+    studies: list[Any] = []
     with ProgressBar("chart", arguments.quiet) as progress:
 
         def tell(what: str, share: float) -> None:
             progress.tell(what, (len(studies) + share) / len(scenes))
 
         for file, scene in scenes:
-            studies.append(measure_scene(file, scene, settings, methods, arguments.runs, variant, tell))
+            studies.append(kind.measure(file, scene, settings, methods, arguments.runs, variant, tell))
     for study in studies:
         if not study.drawn:
-            raise UsageError(f"no method draws {study.file}; {'; '.join(left_out_methods(study))}")
+            raise UsageError(f"no method draws {study.file}; {'; '.join(kind.left_out(study))}")
     return studies
 
 
@@ -174,3 +246,12 @@ def _print(study: "SceneStudy") -> None:
     title = "seconds of a whole process"
     print_table(report.process_rows(study), report.PROCESS_HEADER, report.PROCESS_ALIGN, title)
     print("\n".join(["", report.PROCESS_LEGEND, *report.left_out_methods(study), ""]))
+
+
+def _print_convergence(study: "ConvergenceStudy") -> None:
+    from converter.commands.tables import print_table
+    from converter.studies import convergence_report as report
+
+    title = f"{study.file}, {study.settings.width} x {study.settings.height} pixels"
+    print_table(report.rows(study), report.HEADER, report.ALIGN, title)
+    print("\n".join(["", f"against {report.about_truth(study)}", report.LEGEND, *report.left_out_methods(study), ""]))

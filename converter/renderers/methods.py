@@ -7,12 +7,12 @@ from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from fractions import Fraction
 from functools import cache
-from typing import Any, Literal
+from typing import Any, Literal, cast, get_args
 
 from converter.renderers.base import Renderer
 from converter.scene.depth import MAX_DEPTH
 from converter.scene.model import Csg, Quadric, Scene
-from converter.scene.settings import MOST_THREADS, Settings
+from converter.scene.settings import MOST_THREADS, Points, Settings
 from converter.shapes.table import shape_kind
 from converter.to_mitsuba.fineness import Fineness
 
@@ -142,10 +142,18 @@ def _share(text: str) -> float:
     return value
 
 
+def _points(text: str) -> Points:
+    for points in get_args(Points):
+        if text == points:
+            return cast(Points, points)
+    raise ValueError
+
+
 _SETTINGS: Mapping[str, tuple[str, Callable[[str], Any]]] = {
     "max_depth": (f"a whole number from 0 to {MAX_DEPTH}", _within(0, MAX_DEPTH)),
     "cutoff": ("a number or a fraction from 0 on", _share),
     "threads": (f"a whole number from 1 to {MOST_THREADS}", _within(1, MOST_THREADS)),
+    "points": (" or ".join(get_args(Points)), _points),
 }
 """Settings that a method's name may have, what their values are, and how these are read."""
 

@@ -13,7 +13,7 @@ from numpy.typing import NDArray
 from converter.renderers.records import MOST_RAYS, HitRecord, LightRecord, PixelRecord, RayKind, RayRecord
 from mitsuba_plugins.intersection.columns import column
 from mitsuba_plugins.intersection.rays import NOTHING, UPRIGHT, Ray, lanes
-from mitsuba_plugins.sampler import PRIMARY_PATH, Sample
+from mitsuba_plugins.sampler import PRIMARY_PATH
 
 
 def trace_pixels(scene: Any, pixels: Sequence[tuple[int, int]]) -> list[PixelRecord]:
@@ -33,7 +33,7 @@ def trace_pixels(scene: Any, pixels: Sequence[tuple[int, int]]) -> list[PixelRec
         key = integrator.pixel_key(mi.Point2d(column(mi.Float64, columns), column(mi.Float64, rows)))
         number = column(mi.UInt32, np.tile(np.arange(len(offsets)), len(pixels)))
         position = mi.Point2d(column(mi.Float64, x), column(mi.Float64, y))
-        primary = integrator.primary_ray(sensor, position, Sample(key, number))
+        primary = integrator.primary_ray(sensor, position, integrator.name_sample(key, number))
         rays = _Rays.of(primary, (key, number, mi.UInt32(PRIMARY_PATH)), len(x))
         roots = _Tracer(integrator).trees(rays)
     result = []
@@ -125,7 +125,7 @@ class _Tracer:
     def _times(self, rays: _Rays) -> list[float | None]:
         """The time of each ray, if it has one."""
         key, number, _ = rays.names()
-        time = self._integrator.timed(rays.ray(self._integrator.types), Sample(key, number)).time
+        time = self._integrator.timed(rays.ray(self._integrator.types), self._integrator.name_sample(key, number)).time
         return [None] * len(rays) if time is None else _list(time, len(rays))
 
     def _follow(self, level: list[RayRecord], rays: _Rays) -> tuple[list[RayRecord], _Rays, list[dict[RayKind, float]]]:
@@ -138,7 +138,7 @@ class _Tracer:
         integrator, count = self._integrator, len(rays)
         ray = rays.ray(integrator.types)
         key, number, path = rays.names()
-        sample = Sample(key, number)
+        sample = integrator.name_sample(key, number)
         # Numbers and no expressions of them: every bounce then runs the same few kernels.
         ray = integrator.timed(ray, sample)
         dr.make_opaque(ray, sample, path)

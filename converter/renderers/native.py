@@ -93,6 +93,7 @@ class NativeRenderer:
         return {
             "samples": needs.samples,
             "seed": settings.seed,
+            "independent": settings.points == "independent",
             "corner": settings.pixel == "corner",
             "blinn": settings.specular == "blinn",
             "cutoff": settings.cutoff,

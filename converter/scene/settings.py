@@ -7,6 +7,7 @@ from converter.scene.model import Color
 
 PixelSample = Literal["corner", "center"]
 Specular = Literal["phong", "blinn"]
+Points = Literal["stratified", "independent"]
 IorReading = Literal["auto", "ratio", "index"]
 
 MOST_THREADS = 1024
@@ -28,6 +29,7 @@ class Settings:
         max_depth: bounces after the primary ray; None means as many as the cut-off asks for, within limits.
         samples: rays per pixel, a square number n * n laid out as a grid; None means as many as `rays_a_pixel` tells.
         seed: start of the random numbers of scenes that are sampled.
+        points: random numbers of a pixel's samples that are stratified, or independent: to see what that is worth.
         threads: worker threads; 0 means one for each core.
 
     """
@@ -42,6 +44,7 @@ class Settings:
     max_depth: int | None = None
     samples: int | None = None
     seed: int = 0
+    points: Points = "stratified"
     threads: int = 0
 
     def rays_a_pixel(self, sampled: bool = False) -> int:

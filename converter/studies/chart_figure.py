@@ -101,11 +101,16 @@ def draw_chart(studies: Sequence[SceneStudy], file: Path) -> None:
         OSError: it cannot be written.
 
     """
+    save(lambda: chart(studies), file)
+
+
+def save(make: Callable[[], "Figure"], file: Path) -> None:
+    """Make a figure, and write it as SVG or PNG, by the file's ending."""
     import matplotlib as mpl
 
     # Text stays text, and the same figures give the same file.
     with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "whitted", "axes.linewidth": 0.6}):
-        figure = chart(studies)
+        figure = make()
         ending = file.suffix.lower()
         metadata = {"Date": None} if ending == ".svg" else {}
         figure.savefig(file, format=ending[1:], dpi=DOTS, metadata=metadata)
@@ -123,7 +128,7 @@ def chart(studies: Sequence[SceneStudy]) -> "Figure":
         _draw_processes(processes, study)
         share.set_title(_title(study), fontsize=9)
         panels += [_ErrorPanel.of_shares(share, study), _ErrorPanel.of_rms(rms, study)]
-    figure.supxlabel(_machine(), fontsize=7, color="0.3")
+    figure.supxlabel(machine_line(), fontsize=7, color="0.3")
     for panel in panels:
         panel.draw()
     # The layout first: names are placed in dots.
@@ -143,7 +148,8 @@ def _title(study: SceneStudy) -> str:
     return f"{name}, {size}; medians of up to {runs} runs, bars: quartiles\nerrors against {reference}"
 
 
-def _machine() -> str:
+def machine_line() -> str:
+    """The machine that figures come from, in a line."""
     told = machine()
     return f"{told['processor']}, {told['cores']} cores" + (f", {told['instructions']}" if told["instructions"] else "")
 

@@ -31,7 +31,7 @@ def integrator(
         "waiting": needs.depth.waiting,
         "depth_limited": needs.depth.acts,
         "cutoff": settings.cutoff,
-        **({"seed": settings.seed} if needs.sampled else {}),
+        **({"seed": settings.seed, "points": settings.points} if needs.sampled else {}),
         "reflection": needs.reflects,
         "refraction": needs.refracts,
         "branching": needs.branches,

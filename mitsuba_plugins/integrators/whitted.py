@@ -96,6 +96,11 @@ class Whitted(mi.SamplingIntegrator):
        - Start of the random numbers, where something is sampled: a light with a radius, a finish with a cone, a sensor
          with an aperture, an object that moves (Default: 0)
 
+     * - points
+       - |string|
+       - The random numbers of a pixel's samples: ``stratified``, or ``independent``, to see what that is worth
+         (Default: stratified)
+
      * - reflection, refraction, branching
        - |bool|
        - Follow mirrored rays, refracted rays, and both from one surface (Default: true, true, true)
@@ -167,6 +172,9 @@ class Whitted(mi.SamplingIntegrator):
         self.stack_size = max(1, props.get("waiting", props.get("max_depth", 16)))
         self.depth_limited = props.get("depth_limited", False)
         self.seed = props.get("seed", 0)
+        self.points = props.get("points", "stratified")
+        if self.points not in ("stratified", "independent"):
+            raise ValueError(f"whitted: points is stratified or independent, not '{self.points}'")
         self.pixels_too_deep = 0
         self._tracer: Any = None
         self._eye_contact: EyeContact | None = None
@@ -417,7 +425,7 @@ class Whitted(mi.SamplingIntegrator):
         with self.prepared(scene):
             # Which sample of which pixel a ray is, nobody tells here.
             key = mi.UInt32(mi.Float64(sampler.next_1d()) * 2.0**32) if self.sampled else mi.UInt32(0)
-            sample = samples.Sample(key, mi.UInt32(0))
+            sample = self.name_sample(key, mi.UInt32(0))
             color, _ = self.trace(start_ray(self.types, ray.o, unit(mi.Vector3d(ray.d))), sample, active)
         return mi.Color3f(color), mi.Bool(active), []
 
@@ -486,7 +494,7 @@ class Whitted(mi.SamplingIntegrator):
         if dr.hint(dr.width(offsets) == 2, mode="scalar"):
             # One sample needs no loop, which takes twice as long to record.
             position = corner + dr.gather(mi.Point2d, offsets, mi.UInt32(0))
-            number = samples.Sample(key, mi.UInt32(0))
+            number = self.name_sample(key, mi.UInt32(0))
             more, deep = self.trace(self.primary_ray(sensor, position, number), number, True)
             color += more
             too_deep |= deep
@@ -495,7 +503,7 @@ class Whitted(mi.SamplingIntegrator):
             sample, end = dr.opaque(mi.UInt32, sample, width), dr.opaque(mi.UInt32, end)
             while sample < end:
                 position = corner + dr.gather(mi.Point2d, offsets, sample)
-                number = samples.Sample(key, sample)
+                number = self.name_sample(key, sample)
                 more, deep = self.trace(self.primary_ray(sensor, position, number), number, True)
                 color += more
                 too_deep |= deep
@@ -507,6 +515,12 @@ class Whitted(mi.SamplingIntegrator):
         if not self.sampled:
             return mi.UInt32(0)
         return samples.pixel_key(dr.opaque(mi.UInt32, self.seed), mi.UInt32(corner.x), mi.UInt32(corner.y))
+
+    def name_sample(self, key, number):
+        """A sample of pixels, by their keys and its number."""
+        if self.points == "independent":
+            key, number = samples.make_independent(key, number)
+        return samples.Sample(key, number)
 
     @staticmethod
     def sample_offsets(spp):

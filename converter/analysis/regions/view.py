@@ -126,6 +126,14 @@ def _wide_lens(s: Situation, limit: float) -> Iterator[Finding]:
         yield Finding(0, f"the camera's fovy is {s.scene.camera.fovy:.9g} degrees (more than {180 - limit:.7g})")
 
 
+def _large_lens(s: Situation, limit: float) -> Iterator[Finding]:
+    """A lens from whose rim what is in focus is seen at a glance."""
+    camera = s.scene.camera
+    if camera.focal < limit * camera.aperture:
+        text = f"the camera's aperture is {camera.aperture / camera.focal:.2g} of the distance in focus"
+        yield Finding(0, f"{text} (more than {1 / limit:.2g})")
+
+
 def _up_along_view(s: Situation, limit: float) -> Iterator[Finding]:
     camera = s.scene.camera
     view, up = _unit(np.subtract(camera.look_at, camera.eye)), _unit(np.array(camera.up))
@@ -193,6 +201,9 @@ REGIONS = (
     Region(("fovy",), {"float": 3e-3, "mesh": 3e-3}, _wide_lens),
     Region(("tie-along",), {"double": 1e-10}, _short_view),
     Region(("view-up",), {"float": 3e-5}, _up_along_view),
+    Region(
+        ("aperture", "defocus"), {"double": 3e-6, "float": 3e-5, "mesh": 3e-6, "offset": 3e-4, "ulp": 3e-3}, _large_lens
+    ),
     Region(("camera-height", "inside-glass"), {"double": 2e-15, "float": 3e-8, "mesh": 3e-8}, _near_surface),
     Region(("camera-height", "camera-on-floor", "camera-on-ball"), {"offset": 3e-8, "ulp": 3e-8}, _at_surface),
 )

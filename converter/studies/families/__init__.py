@@ -14,6 +14,7 @@ from converter.studies.families import (
     ray_trees,
     reflection,
     refraction,
+    sampled,
     size,
     ties,
 )
@@ -35,6 +36,7 @@ FAMILIES: Mapping[str, Family] = {
         lights_and_camera,
         incidence,
         ray_trees,
+        sampled,
         ties,
     )
     for family in module.FAMILIES

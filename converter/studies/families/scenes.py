@@ -95,15 +95,19 @@ def scaled(whole: Scene, factor: float) -> Scene:
 
     def dimmed(source: Light) -> Light:
         a, b, c = source.attenuation
-        return replace(source, position=vector(source.position), attenuation=(a, b / factor, c / factor**2))
+        fading = (a, b / factor, c / factor**2)
+        return replace(source, position=vector(source.position), attenuation=fading, radius=factor * source.radius)
 
     view = whole.camera
+    aperture, focal = factor * view.aperture, factor * view.focal
     return replace(
         whole,
-        camera=replace(view, eye=vector(view.eye), look_at=vector(view.look_at)),
+        camera=replace(view, eye=vector(view.eye), look_at=vector(view.look_at), aperture=aperture, focal=focal),
         lights=tuple(map(dimmed, whole.lights)),
         pigments=tuple(pigment_kind(p).scaled(p, factor) for p in whole.pigments),
-        objects=tuple(replace(o, shape=shape_kind(o.shape).scaled(o.shape, factor)) for o in whole.objects),
+        objects=tuple(
+            replace(o, shape=shape_kind(o.shape).scaled(o.shape, factor), move=vector(o.move)) for o in whole.objects
+        ),
     )
 
 

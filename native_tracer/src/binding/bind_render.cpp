@@ -28,8 +28,9 @@ using namespace whitted;
 
 namespace {
 
-RenderSettings settings_of(int width, int height, int samples, std::uint32_t seed, bool corner, bool blinn,
-                           double cutoff, int max_depth, const std::string& precision, const std::string& search) {
+RenderSettings settings_of(int width, int height, int samples, std::uint32_t seed, bool independent, bool corner,
+                           bool blinn, double cutoff, int max_depth, const std::string& precision,
+                           const std::string& search) {
     if (width <= 0 || height <= 0) {
         throw std::invalid_argument("a picture needs a width and a height above 0");
     }
@@ -43,7 +44,7 @@ RenderSettings settings_of(int width, int height, int samples, std::uint32_t see
     if (max_depth < 0) {
         throw std::invalid_argument("max_depth must not be negative");
     }
-    RenderSettings settings{width, height, grid, seed, corner, blinn, cutoff, max_depth};
+    RenderSettings settings{width, height, grid, seed, independent, corner, blinn, cutoff, max_depth};
     if (precision == "float") {
         settings.precision = Precision::single;
     } else if (precision == "long double") {
@@ -61,11 +62,11 @@ RenderSettings settings_of(int width, int height, int samples, std::uint32_t see
     return settings;
 }
 
-void render_image(const SceneDescription& scene, Image& image, int samples, std::uint32_t seed, bool corner, bool blinn,
-                  double cutoff, int max_depth, const std::string& precision, const std::string& search, int threads,
-                  nb::object progress, const std::string& instructions) {
-    const RenderSettings settings =
-        settings_of(image.width(), image.height(), samples, seed, corner, blinn, cutoff, max_depth, precision, search);
+void render_image(const SceneDescription& scene, Image& image, int samples, std::uint32_t seed, bool independent,
+                  bool corner, bool blinn, double cutoff, int max_depth, const std::string& precision,
+                  const std::string& search, int threads, nb::object progress, const std::string& instructions) {
+    const RenderSettings settings = settings_of(image.width(), image.height(), samples, seed, independent, corner,
+                                                blinn, cutoff, max_depth, precision, search);
     if (!progress.is_none() && !PyCallable_Check(progress.ptr())) {
         throw nb::type_error("progress must be callable");
     }
@@ -139,10 +140,10 @@ nb::dict dropped_of(const RayRecord& ray) {
 }
 
 nb::dict trace_pixel(const SceneDescription& scene, int width, int height, int x, int y, int samples,
-                     std::uint32_t seed, bool corner, bool blinn, double cutoff, int max_depth,
+                     std::uint32_t seed, bool independent, bool corner, bool blinn, double cutoff, int max_depth,
                      const std::string& precision, const std::string& search) {
     const RenderSettings settings =
-        settings_of(width, height, samples, seed, corner, blinn, cutoff, max_depth, precision, search);
+        settings_of(width, height, samples, seed, independent, corner, blinn, cutoff, max_depth, precision, search);
     if (x < 0 || x >= width || y < 0 || y >= height) {
         throw nb::index_error("the pixel lies outside the picture");
     }
@@ -276,13 +277,15 @@ void bind_render(nb::module_& module) {
             "Rays of the last rendering by kind, its deepest bounce, its threads, and how it searched.");
 
     module.def("render", &render_image, "scene"_a, "image"_a, nb::kw_only(), "samples"_a = 1, "seed"_a = 0,
-               "corner"_a = true, "blinn"_a = false, "cutoff"_a, "max_depth"_a, "precision"_a = "double",
-               "search"_a = "auto", "threads"_a = 0, "progress"_a = nb::none(), "instructions"_a = "",
+               "independent"_a = false, "corner"_a = true, "blinn"_a = false, "cutoff"_a, "max_depth"_a,
+               "precision"_a = "double", "search"_a = "auto", "threads"_a = 0, "progress"_a = nb::none(),
+               "instructions"_a = "",
                "Draw `scene` into `image`. `progress` is called about 20 times a second with the finished share; what\n"
                "it raises, and Ctrl-C, stop the rendering, and what is finished stays in the image.");
     module.def("trace_pixel", &trace_pixel, "scene"_a, "width"_a, "height"_a, "x"_a, "y"_a, nb::kw_only(),
-               "samples"_a = 1, "seed"_a = 0, "corner"_a = true, "blinn"_a = false, "cutoff"_a, "max_depth"_a,
-               "precision"_a = "double", "search"_a = "auto", "The rays of one pixel as nested dictionaries.");
+               "samples"_a = 1, "seed"_a = 0, "independent"_a = false, "corner"_a = true, "blinn"_a = false, "cutoff"_a,
+               "max_depth"_a, "precision"_a = "double", "search"_a = "auto",
+               "The rays of one pixel as nested dictionaries.");
     module.def("count_nan_pixels", &count_nan_pixels, "pixels"_a,
                "How many pixels of a float32 buffer, three numbers each, have a NaN among them.");
     module.def(

@@ -44,7 +44,7 @@ nb::ndarray<nb::memview, Number> array_of(std::vector<Number> numbers, std::size
 
 // The points from `begin` to `end`, as many at once as a Word holds.
 template <typename Word>
-void fill_points(std::uint32_t seed, const Words (&words)[5], std::size_t begin, std::size_t end,
+void fill_points(std::uint32_t seed, bool independent, const Words (&words)[5], std::size_t begin, std::size_t end,
                  std::uint32_t* points) {
     constexpr std::size_t lanes = sizeof(Word) / sizeof(std::uint32_t);
     for (std::size_t i = begin; i < end; i += lanes) {
@@ -53,8 +53,12 @@ void fill_points(std::uint32_t seed, const Words (&words)[5], std::size_t begin,
         for (std::size_t k = 0; k < 5; ++k) {
             std::memcpy(&taken[k], words[k].data() + i, count * sizeof(std::uint32_t));
         }
-        const auto& [column, row, number, path, what] = taken;
-        const SamplePoint<Word> point = sample_point(pixel_key(Word{} + seed, column, row), number, path, what);
+        auto& [column, row, number, path, what] = taken;
+        Word pixel = pixel_key(Word{} + seed, column, row);
+        if (independent) {
+            make_independent(pixel, number);
+        }
+        const SamplePoint<Word> point = sample_point(pixel, number, path, what);
         std::uint32_t x[lanes], y[lanes];
         std::memcpy(x, &point.x, sizeof(x));
         std::memcpy(y, &point.y, sizeof(y));
@@ -67,7 +71,8 @@ void fill_points(std::uint32_t seed, const Words (&words)[5], std::size_t begin,
 
 // The first half of them in lanes, the others one by one, as the renderer may do either.
 nb::ndarray<nb::memview, std::uint32_t> sample_points(std::uint32_t seed, const Words& column, const Words& row,
-                                                      const Words& k, const Words& path, const Words& what) {
+                                                      const Words& k, const Words& path, const Words& what,
+                                                      bool independent) {
     using Four = std::uint32_t __attribute__((vector_size(16)));
     const std::size_t count = column.shape(0);
     const Words words[5] = {column, row, k, path, what};
@@ -75,8 +80,8 @@ nb::ndarray<nb::memview, std::uint32_t> sample_points(std::uint32_t seed, const 
         same_length(count, others.shape(0));
     }
     std::vector<std::uint32_t> points(2 * count);
-    fill_points<Four>(seed, words, 0, count / 2, points.data());
-    fill_points<std::uint32_t>(seed, words, count / 2, count, points.data());
+    fill_points<Four>(seed, independent, words, 0, count / 2, points.data());
+    fill_points<std::uint32_t>(seed, independent, words, count / 2, count, points.data());
     return array_of(std::move(points), 2);
 }
 
@@ -127,7 +132,7 @@ nb::ndarray<nb::memview, double> cone_directions(const Vectors& axes, const Numb
 
 void bind_sampler(nb::module_& module) {
     module.def("sample_points", &sample_points, "seed"_a, "column"_a, "row"_a, "k"_a, "path"_a, "use"_a,
-               "The points of samples; see native_tracer.sampler.");
+               "independent"_a = false, "The points of samples; see native_tracer.sampler.");
     module.def("disc_points", &disc_points, "points"_a, "Points of the unit disc; see native_tracer.sampler.");
     module.def("cone_directions", &cone_directions, "axes"_a, "versines"_a, "points"_a,
                "Directions in cones; see native_tracer.sampler.");

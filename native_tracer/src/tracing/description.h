@@ -118,6 +118,7 @@ struct RenderSettings {
     int width, height;
     int grid = 1;  // grid x grid rays a pixel
     std::uint32_t seed = 0;
+    bool independent = false;  // a pixel's points, rather than stratified
     bool corner = true;
     bool blinn = false;
     double cutoff = 0;

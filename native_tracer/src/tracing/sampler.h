@@ -121,6 +121,14 @@ template <typename Word>
             reverse_bits(scramble_reversed(sobol_reversed(index), scrambling_y))};
 }
 
+// What makes the points of one pixel independent of each other, too: each sample is named like a pixel of its own, and
+// has the first point of its sequence. Only to measure what stratification is worth.
+template <typename Word>
+[[gnu::always_inline]] inline void make_independent(Word& pixel, Word& k) {
+    pixel = combine(pixel, k);
+    k = Word{};
+}
+
 // ---- In lanes -----------------------------------------------------------------------------------------------------
 
 // Words for all lanes: more than there are lanes, where they fill a register.

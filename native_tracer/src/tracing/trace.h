@@ -45,6 +45,7 @@ class Tracer {
           max_depth_(settings.max_depth),
           blinn_(settings.blinn),
           seed_(settings.seed),
+          independent_(settings.independent),
           reflected_(scene.sampled),
           transmitted_(scene.sampled),
           batch_(scene.sampled) {}
@@ -97,6 +98,7 @@ class Tracer {
     const int max_depth_;
     const bool blinn_;
     const std::uint32_t seed_;
+    const bool independent_;
 
     // Successors of the rays that are traced, and those that are traced. Kinds wait apart: in which order rays are
     // traced must not depend on the number of lanes.
@@ -322,6 +324,9 @@ PlanePoint<Real> Tracer<Real, Observer>::sample(const Group<Real>& group, Indice
         names.pixel_key[at] = pixel_keys_[static_cast<std::size_t>(group.pixel[lane])].value;
         names.number[at] = static_cast<std::uint32_t>(group.sample[lane]);
         names.path[at] = static_cast<std::uint32_t>(path[lane]);
+        if (independent_) [[unlikely]] {
+            make_independent(names.pixel_key[at], names.number[at]);
+        }
     }
     return square_point(names, use);
 }
