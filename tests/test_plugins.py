@@ -322,9 +322,9 @@ HOST_DIVISIONS = {
     "intersection/shapes/polyhedron.py": {"contacts", "_normalised"},
     "intersection/shapes/quadric.py": {"_form", "_rows", "_anchor", "_contact"},
     "intersection/shapes/sphere.py": {"contacts"},
-    "integrators/pace.py": {"__init__", "rows", "samples", "launch"},
+    "integrators/pace.py": {"__init__", "rows", "samples", "passes", "launch"},
     "trial.py": {"_memory"},
-    "integrators/whitted.py": {"__init__", "_bands", "_corners", "sample_offsets"},
+    "integrators/whitted.py": {"__init__", "_stage", "_corners", "sample_offsets"},
 }
 """Functions that divide Python's or NumPy's numbers, or whole numbers, or build a path."""
 

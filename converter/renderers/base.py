@@ -2,6 +2,7 @@
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
+from inspect import signature
 from typing import TYPE_CHECKING, Any, Protocol, TypeGuard
 
 from converter.scene.effects import Effect
@@ -19,6 +20,25 @@ Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True, slots=True)
+class Passes:
+    """The samples of a picture that are drawn, in whole passes over it: what drawing may go on from.
+
+    Attributes:
+        done: how many passes are whole. total: how many there are.
+        colors: (height, width, 3) float64 buffer, the sums of the samples' colours, linear RGB.
+        too_deep: (height, width) buffer of bytes, 1 where the depth limit has dropped a ray.
+        notes: what else a renderer remembers, such as counters, as JSON has it.
+
+    """
+
+    done: int
+    total: int
+    colors: "Buffer"
+    too_deep: "Buffer"
+    notes: Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
 class Rendering:
     """A finished picture.
 
@@ -26,6 +46,7 @@ class Rendering:
         pixels: (height, width, 3) float32 buffer, linear RGB, row 0 on top, not clamped; `numpy.asarray` makes it an
         array. seconds: wall-clock seconds by stage, e.g. {"build": 0.01, "render": 0.04}, in the order they ran.
         statistics: the renderer's own counters, e.g. {"rays": 1862000, "threads": 2}.
+        passes: where it was stopped, and some passes were whole: these.
 
     """
 
@@ -34,10 +55,11 @@ class Rendering:
     height: int
     seconds: Mapping[str, float]
     statistics: Mapping[str, Any] = field(default_factory=dict)
+    passes: Passes | None = None
 
 
 class Interrupted(KeyboardInterrupt):
-    """The user stopped a rendering; `partial` holds it, black where it was not finished."""
+    """The user stopped a rendering; `partial` holds it, black where nothing is drawn."""
 
     def __init__(self, partial: Rendering) -> None:
         super().__init__("interrupted")
@@ -46,6 +68,10 @@ class Interrupted(KeyboardInterrupt):
 
 class RendererUnavailable(Exception):  # noqa: N818 - what it says
     """A renderer cannot run on this machine; the message says what is missing and what to install."""
+
+
+class ResumeError(Exception):
+    """Drawing cannot go on from what was drawn; the message says why."""
 
 
 class EffectUnavailable(RendererUnavailable):
@@ -76,6 +102,26 @@ class Renderer(Protocol):
 
         """
         ...
+
+
+class PassRenderer(Renderer, Protocol):
+    """A renderer that draws long pictures in passes."""
+
+    def render(
+        self, scene: Scene, settings: Settings, progress: Progress | None = None, start: Passes | None = None
+    ) -> Rendering:
+        """Draw `scene`, and go on from the passes `start`, if given: the picture is the same.
+
+        Raises:
+            ResumeError: the renderer does not go on from these.
+
+        """
+        ...
+
+
+def draws_in_passes(renderer: Renderer) -> TypeGuard[PassRenderer]:
+    """Whether a renderer draws in passes."""
+    return "start" in signature(renderer.render).parameters
 
 
 class RayTeller(Renderer, Protocol):

@@ -9,7 +9,7 @@ from typing import TYPE_CHECKING, Any, Literal
 
 from converter.analysis.coplanar import with_planes_shared
 from converter.pigments.table import pigment_kind
-from converter.renderers.base import Interrupted, Progress, RendererUnavailable, Rendering, refuse_effects
+from converter.renderers.base import Interrupted, Passes, Progress, RendererUnavailable, Rendering, refuse_effects
 from converter.scene.effects import Effect
 from converter.scene.geometry import simplified
 from converter.scene.model import Scene
@@ -40,8 +40,10 @@ class NativeRenderer:
     precision: Precision = "double"
     search: Search = "auto"
 
-    def render(self, scene: Scene, settings: Settings, progress: Progress | None = None) -> Rendering:
-        """Draw `scene`.
+    def render(
+        self, scene: Scene, settings: Settings, progress: Progress | None = None, start: Passes | None = None
+    ) -> Rendering:
+        """Draw `scene`, from the passes `start` on.
 
         Raises:
             RendererUnavailable: the native module is not built, or cannot draw an effect that the scene has.
@@ -55,17 +57,23 @@ class NativeRenderer:
         needs = scene_needs(scene, settings)
         native_scene = build_scene(scene, needs)
         image = tracer.Image(settings.width, settings.height)
+        passes = _passes(needs.samples)
+        sums = _pass_sums(tracer, settings, start) if len(passes) > 1 else None
         built = time.perf_counter()
 
         def rendering() -> Rendering:
             seconds = {"build": built - started, "render": time.perf_counter() - built}
             statistics = image.statistics
             rays = sum(statistics[kind] for kind in ("primary", "reflected", "transmitted", "shadow"))
-            return Rendering(image.pixels, image.width, image.height, seconds, {"rays": rays, **statistics})
+            whole = None
+            if sums is not None and 0 < sums.passes < len(passes):
+                whole = Passes(sums.passes, len(passes), sums.colors, sums.too_deep, {"counts": sums.counts})
+            return Rendering(image.pixels, image.width, image.height, seconds, {"rays": rays, **statistics}, whole)
 
         threads = settings.threads or available_cores()
         try:
-            tracer.render(native_scene, image, threads=threads, progress=progress, **self._options(settings, needs))
+            options = self._options(settings, needs) | ({"passes": passes, "sums": sums} if sums is not None else {})
+            tracer.render(native_scene, image, threads=threads, progress=progress, **options)
         except KeyboardInterrupt:
             raise Interrupted(rendering()) from None
         return rendering()
@@ -100,6 +108,23 @@ class NativeRenderer:
             "precision": self.precision,
             "search": self.search,
         }
+
+
+def _passes(samples: int) -> list[list[int]]:
+    from native_tracer.passes import passes  # late: it may not be built
+
+    return passes(samples)
+
+
+def _pass_sums(tracer: ModuleType, settings: Settings, start: Passes | None) -> Any:
+    """The tracer's sums of passes: none yet, or those to start from."""
+    sums = tracer.PassSums(settings.width, settings.height)
+    if start is not None:
+        sums.passes = start.done
+        for target, source in ((sums.colors, start.colors), (sums.too_deep, start.too_deep)):
+            target.cast("B")[:] = memoryview(source).cast("B")
+        sums.counts = start.notes["counts"]
+    return sums
 
 
 def native_module() -> ModuleType:

@@ -2,6 +2,7 @@
 
 import math
 from contextlib import contextmanager
+from dataclasses import dataclass
 from typing import Any
 
 import drjit as dr
@@ -43,6 +44,7 @@ from mitsuba_plugins.intersection.rounding import (
     least_spread,
     most_blur,
 )
+from native_tracer.passes import passes
 
 INTERSECTIONS = ("analytic", "bvh", "mesh", "offset", "ulp")
 """Ways to find what a ray hits."""
@@ -162,6 +164,7 @@ class Whitted(mi.SamplingIntegrator):
         self.depth_limited = props.get("depth_limited", False)
         self.seed = props.get("seed", 0)
         self.pixels_too_deep = 0
+        self.sums: PassSums | None = None
         self._tracer: Any = None
         self._eye_contact: EyeContact | None = None
 
@@ -406,43 +409,94 @@ class Whitted(mi.SamplingIntegrator):
             the finished share of the picture.
 
         """
-        offsets = self.sample_offsets(spp or sensor.sampler().sample_count())
+        cells = [cell for cells in passes(spp or sensor.sampler().sample_count()) for cell in cells]
         with self.prepared(scene, sensor), dr.suspend_grad():
-            yield from self._bands(sensor, offsets, progress)
+            pace = Pace(self.branching, self.max_depth[0])
+            self.pixels_too_deep = 0
+            for first, color, too_deep in self._stage(sensor, pace, self._tables(cells), 0, len(cells), None, progress):
+                if self.depth_limited:
+                    self.pixels_too_deep += dr.count(too_deep)[0]
+                yield first, mi.Color3f(quotient(color, len(cells)))
 
-    def _bands(self, sensor, offsets, progress):
+    def bands_by_passes(self, scene, sensor, start=None, progress=None):
+        """Draw a picture in passes of samples, see :mod:`native_tracer.passes`, and each in bands: pictures that take
+        long, for all of it has some samples soon. Short passes are drawn together.
+
+        Yields:
+            The first row of a band within the film's crop window, and its pixels' colours (Color3f) with what is drawn
+            so far. What is left in ``sums`` (PassSums) has whole passes only, beginning with those of `start`.
+
+        """
+        all_passes = passes(sensor.sampler().sample_count())
+        cells = [cell for cells in all_passes for cell in cells]
         width, height = sensor.film().crop_size()
-        table = column(mi.Float64, offsets)
-        pace = Pace(self.branching, self.max_depth[0])
-        self.pixels_too_deep = 0
+        with self.prepared(scene, sensor), dr.suspend_grad():
+            pace = Pace(self.branching, self.max_depth[0])
+            tables = self._tables(cells)
+            self.sums = start or PassSums(0, dr.zeros(mi.Color3d, width * height), dr.zeros(mi.Bool, width * height))
+            while self.sums.passes < len(all_passes):
+                size = len(all_passes[0])
+                more = min(pace.passes(width * height * size), len(all_passes) - self.sums.passes)
+                begin, end = self.sums.passes * size, (self.sums.passes + more) * size
+                bands = []
+                for first, color, too_deep in self._stage(sensor, pace, tables, begin, end, self.sums, progress):
+                    bands.append((*color, too_deep if self.depth_limited else dr.zeros(mi.Bool, dr.width(color))))
+                    yield first, mi.Color3f(quotient(color, end))
+                red, green, blue, too_deep = (dr.concat(parts) for parts in zip(*bands, strict=True))
+                colors = mi.Color3d(red, green, blue)
+                dr.eval(colors, too_deep)
+                self.sums = PassSums(self.sums.passes + more, colors, too_deep)
+                self.pixels_too_deep = dr.count(too_deep)[0]
+
+    def _tables(self, cells):
+        """Where the samples of a pixel lie, in the order in which they are drawn, and their numbers."""
+        offsets = self.sample_offsets(len(cells))
+        return column(mi.Float64, [offsets[cell] for cell in cells]), mi.UInt32(cells)
+
+    def _stage(self, sensor, pace, tables, begin, end, sums, progress):
+        """Draw samples from `begin` to `end` of all pixels, in bands of rows, and add them to what `sums` (PassSums) has
+        of the pixel, if given.
+
+        Yields:
+            The first row of a finished band, the sums of its pixels' colours (Color3d), and where the depth limit
+            dropped a ray (Bool), if it is limited.
+
+        """
+        width, height = sensor.film().crop_size()
+        count = dr.width(tables[1])
         first = 0
         while first < height:
             rows = min(height - first, pace.rows(width))
-            # Opaque, so that the first launch needs no kernel of its own.
-            color = dr.opaque(mi.Color3d, 0, rows * width)
-            too_deep = dr.opaque(mi.Bool, False, rows * width) if self.depth_limited else False
-            done = 0
-            while done < len(offsets):
-                count = min(len(offsets) - done, pace.samples(rows * width))
-                with pace.launch(rows * width * count):
-                    color, too_deep = self._add_samples(sensor, color, too_deep, first, table, done, done + count)
+            if sums is None:
+                # Opaque, so that the first launch needs no kernel of its own.
+                color = dr.opaque(mi.Color3d, 0, rows * width)
+                too_deep = dr.opaque(mi.Bool, False, rows * width) if self.depth_limited else False
+            else:
+                pixel = dr.arange(mi.UInt32, rows * width) + dr.opaque(mi.UInt32, first * width)
+                color = dr.gather(mi.Color3d, sums.colors, pixel)
+                too_deep = dr.gather(mi.Bool, sums.too_deep, pixel) if self.depth_limited else False
+                dr.eval(color, too_deep)
+            done = begin
+            while done < end:
+                more = min(end - done, pace.samples(rows * width))
+                with pace.launch(rows * width * more):
+                    color, too_deep = self._add_samples(sensor, color, too_deep, first, tables, done, done + more)
                     pace.recorded()
                     dr.eval(color, too_deep)
                     dr.sync_thread()
-                done += count
+                done += more
                 if progress is not None:
-                    progress((first + rows * done / len(offsets)) / height)
-            if self.depth_limited:
-                self.pixels_too_deep += dr.count(too_deep)[0]
-            yield first, mi.Color3f(quotient(color, len(offsets)))
+                    progress((begin + ((end - begin) * first + rows * (done - begin)) / height) / count)
+            yield first, color, too_deep
             first += rows
 
     @dr.syntax
-    def _add_samples(self, sensor, color, too_deep, first, offsets, sample, end):
+    def _add_samples(self, sensor, color, too_deep, first, tables, sample, end):
         """What `trace` finds for the pixels of whole rows from row `first` on, with some more samples added."""
         width = dr.width(color)
         corner = _corners(sensor.film(), first, width)
         key = self.pixel_key(corner)
+        offsets, numbers = tables
         if dr.hint(dr.width(offsets) == 2, mode="scalar"):
             # One sample needs no loop, which takes twice as long to record.
             position = corner + dr.gather(mi.Point2d, offsets, mi.UInt32(0))
@@ -455,7 +509,7 @@ class Whitted(mi.SamplingIntegrator):
             sample, end = dr.opaque(mi.UInt32, sample, width), dr.opaque(mi.UInt32, end)
             while sample < end:
                 position = corner + dr.gather(mi.Point2d, offsets, sample)
-                number = samples.Sample(key, sample)
+                number = samples.Sample(key, dr.gather(mi.UInt32, numbers, sample) if self.sampled else mi.UInt32(0))
                 more, deep = self.trace(self.primary_ray(sensor, position), number, True)
                 color += more
                 too_deep |= deep
@@ -504,6 +558,17 @@ class Whitted(mi.SamplingIntegrator):
     def to_string(self):
         way = f"{self.intersections}, {self.precision}"
         return f"Whitted[{len(self.surfaces)} surfaces, {way}, max_depth={self.max_depth}]"
+
+
+@dataclass(frozen=True)
+class PassSums:
+    """What is drawn of a picture in whole passes: their number, the sums of the samples' colours (Color3d), and the
+    pixels in which the depth limit dropped a ray (Bool).
+    """
+
+    passes: int
+    colors: Any
+    too_deep: Any
 
 
 class Bsdfs:

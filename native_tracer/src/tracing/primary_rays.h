@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <cstddef>
 #include <cstdint>
 #include <vector>
 
@@ -15,17 +16,19 @@
 
 namespace whitted::WHITTED_ISA {
 
-// The rays of a rectangle of pixels: row by row, in each a grid of grid x grid rays a pixel, one place of it after the
-// other.
+// The rays of a rectangle of pixels: row by row, in each some or all places of a grid of grid x grid rays a pixel, one
+// place of it after the other.
 template <typename Real>
 class PrimaryRays {
  public:
     PrimaryRays(const Camera<Real>& camera, const EyeContact<Real>& contact, const RenderSettings& settings,
-                const Tile& tile)
+                const Tile& tile, const Places* places = nullptr)
         : camera_(camera),
           contact_(contact),
           tile_(tile),
           grid_(settings.grid),
+          places_(places),
+          samples_(places ? static_cast<int>(places->size()) : grid_ * grid_),
           shift_(settings.corner ? Real(0.5) : Real(0)),
           reach_(max_norm(Vector<Lanes<Real>>(camera.eye()))),
           column_(tile.left),
@@ -49,10 +52,10 @@ class PrimaryRays {
         using L = Lanes<Real>;
         const L columns = L(static_cast<Real>(column_)) + L::numbers();
         const L rows = static_cast<Real>(row_);
+        const int place = places_ ? (*places_)[static_cast<std::size_t>(sample_)] : sample_;
         Group<Real> group;
         group.rays.origin = Vector<L>(camera_.eye());
-        group.rays.direction =
-            camera_.directions(columns + L(offset(sample_ % grid_)), rows + L(offset(sample_ / grid_)));
+        group.rays.direction = camera_.directions(columns + L(offset(place % grid_)), rows + L(offset(place / grid_)));
         group.rays.t_min = camera_.eye_error();
         group.rays.object = contact_.object;
         group.rays.primitive = contact_.primitive;
@@ -64,7 +67,7 @@ class PrimaryRays {
         group.pixel = Indices<Real>((row_ - tile_.top) * (tile_.right - tile_.left) + column_ - tile_.left) +
                       Indices<Real>::numbers();
         group.record = -1;
-        group.sample = sample_;
+        group.sample = place;
         group.path = static_cast<int>(primary_path);
         group.active = Mask<Real>::first(tile_.right - column_);
         advance();
@@ -78,7 +81,7 @@ class PrimaryRays {
             return;
         }
         column_ = tile_.left;
-        if (++sample_ == grid_ * grid_) {
+        if (++sample_ == samples_) {
             sample_ = 0;
             ++row_;
         }
@@ -91,10 +94,12 @@ class PrimaryRays {
     const EyeContact<Real>& contact_;
     const Tile tile_;
     const int grid_;
+    const Places* const places_;  // null: all, in the order of their numbers
+    const int samples_;
     const Real shift_;
     const Lanes<Real> reach_;  // of the eye
     int column_, row_;
-    int sample_ = 0;  // a place in the grid
+    int sample_ = 0;  // how many of the places come before
 };
 
 }  // namespace whitted::WHITTED_ISA

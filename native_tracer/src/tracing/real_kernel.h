@@ -32,29 +32,61 @@ class RealKernel final : public Kernel {
         : scene_(scene, plan), camera_(scene.camera, settings.width, settings.height), settings_(settings) {}
 
     bool trace_tile(const Tile& tile, float* picture, RayCounts& counts, const std::atomic<bool>& stop) const override {
-        Unobserved unobserved;
-        Tracer<Real, Unobserved> tracer(scene_, settings_, unobserved);
-        using Sum = typename Tracer<Real, Unobserved>::Sum;
-        std::array<Color<Sum>, tile_width * tile_height> sums;
-        sums.fill({0, 0, 0});
-        if (!tracer.trace(PrimaryRays<Real>(camera_, scene_.eye_contact, settings_, tile), sums.data(), counts, stop)) {
-            return false;
-        }
         const int grid2 = settings_.grid * settings_.grid;
-        std::size_t pixel = 0;
-        for (int row = tile.top; row < tile.bottom; ++row) {
-            for (int column = tile.left; column < tile.right; ++column) {
-                const std::size_t index = static_cast<std::size_t>(row) * static_cast<std::size_t>(settings_.width) +
-                                          static_cast<std::size_t>(column);
-                store_mean(sums[pixel++], grid2, picture + 3 * index);
+        return trace_pixels(tile, nullptr, counts, stop,
+                            [&](const Pixel& pixel) { store_mean(pixel.sum, grid2, picture + 3 * pixel.index); });
+    }
+
+    bool add_samples(const Tile& tile, const Places& places, const SampleSums& sums, float* picture, RayCounts& counts,
+                     const std::atomic<bool>& stop) const override {
+        return trace_pixels(tile, &places, counts, stop, [&](const Pixel& pixel) {
+            const double* before = sums.before + 3 * pixel.index;
+            double* after = sums.after + 3 * pixel.index;
+            after[0] = before[0] + static_cast<double>(pixel.sum.x);
+            after[1] = before[1] + static_cast<double>(pixel.sum.y);
+            after[2] = before[2] + static_cast<double>(pixel.sum.z);
+            store_mean(Color<double>{after[0], after[1], after[2]}, sums.samples, picture + 3 * pixel.index);
+            if (pixel.too_deep) {
+                sums.too_deep[pixel.index] = 1;
             }
-        }
-        return true;
+        });
     }
 
     bool uses_tree() const override { return !scene_.tree.empty(); }
 
  private:
+    using Sum = typename Tracer<Real, Unobserved>::Sum;
+
+    // What is known of a pixel when its samples are traced.
+    struct Pixel {
+        std::size_t index;  // in the picture
+        const Color<Sum>& sum;
+        bool too_deep;
+    };
+
+    // Calls store(pixel) for each pixel of the tile, once all are traced.
+    template <typename Store>
+    bool trace_pixels(const Tile& tile, const Places* places, RayCounts& counts, const std::atomic<bool>& stop,
+                      Store store) const {
+        Unobserved unobserved;
+        Tracer<Real, Unobserved> tracer(scene_, settings_, unobserved);
+        std::array<Color<Sum>, tile_width * tile_height> sums;
+        sums.fill({0, 0, 0});
+        const PrimaryRays<Real> rays(camera_, scene_.eye_contact, settings_, tile, places);
+        if (!tracer.trace(rays, sums.data(), counts, stop)) {
+            return false;
+        }
+        std::size_t pixel = 0;
+        for (int row = tile.top; row < tile.bottom; ++row) {
+            for (int column = tile.left; column < tile.right; ++column, ++pixel) {
+                const std::size_t index = static_cast<std::size_t>(row) * static_cast<std::size_t>(settings_.width) +
+                                          static_cast<std::size_t>(column);
+                store(Pixel{index, sums[pixel], tracer.too_deep(pixel)});
+            }
+        }
+        return true;
+    }
+
     const Scene<Real> scene_;
     const Camera<Real> camera_;
     const RenderSettings settings_;

@@ -54,6 +54,9 @@ class Tracer {
     template <typename PrimaryRays>
     bool trace(PrimaryRays primary_rays, Color<Sum>* sums, RayCounts& counts, const std::atomic<bool>& stop);
 
+    // Whether the depth limit dropped a ray of a pixel that was traced last.
+    bool too_deep(std::size_t pixel) const { return pixel < pixels_.size() && pixels_[pixel].too_deep; }
+
  private:
     // The batch, not the number of lanes, decides which rays are traced next, so that the rays of a pixel are summed in
     // the same order on every processor.
