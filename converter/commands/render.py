@@ -4,7 +4,7 @@ import argparse
 import sys
 from pathlib import Path
 
-from converter.commands.exits import OK
+from converter.commands.exits import OK, UsageError
 from converter.commands.method_options import add_method_options, check_variant, choose, native_instead
 from converter.commands.options import Parser, add_reading_options, add_running_options, add_size
 from converter.commands.results import Result, TextResult
@@ -43,7 +43,16 @@ def parser() -> Parser:
         metavar="FILE",
         help="write what --stats prints; - is the standard output, without the table",
     )
-    group.add_argument("--keep-partial", action="store_true", help="on Ctrl-C write what is finished")
+    group.add_argument(
+        "--keep-partial",
+        action="store_true",
+        help="on Ctrl-C write what is drawn, and OUT.partial for --resume if whole passes of samples are",
+    )
+    group.add_argument(
+        "--resume",
+        action="store_true",
+        help="go on from OUT.partial, if it is there, to the same picture; keeps what is drawn, too",
+    )
     return result
 
 
@@ -56,11 +65,18 @@ def run(arguments: argparse.Namespace) -> int:
     check_variant(arguments, [arguments.method])
     method = choose(arguments.method, arguments)
 
-    from converter.commands.drawing import draw
+    from converter.commands.drawing import Keeping, draw
     from converter.commands.json_out import check_json, write_json
     from converter.commands.notes import say
+    from converter.files import is_special
+    from converter.renderers.base import draws_in_passes
 
     check_json(arguments.json, [arguments.scene])
+    keeping = Keeping(method.name, arguments.resume) if arguments.keep_partial or arguments.resume else None
+    if arguments.resume and is_special(arguments.out):
+        raise UsageError("--resume: OUT must be a file, with what was kept beside it")
+    if arguments.resume and not draws_in_passes(method.renderer):
+        raise UsageError(f"--resume: {method.name} draws a picture in one go")
     quiet, settings = arguments.quiet, method.settings
     if quiet:
         import logging
@@ -73,7 +89,7 @@ def run(arguments: argparse.Namespace) -> int:
             arguments.out,
             settings,
             quiet,
-            arguments.keep_partial,
+            keeping,
             arguments.method,
             arguments.format,
         )

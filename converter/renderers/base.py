@@ -2,8 +2,7 @@
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
-from inspect import signature
-from typing import TYPE_CHECKING, Any, Protocol, TypeGuard
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeGuard
 
 from converter.scene.effects import Effect
 from converter.scene.model import Scene
@@ -46,7 +45,7 @@ class Rendering:
         pixels: (height, width, 3) float32 buffer, linear RGB, row 0 on top, not clamped; `numpy.asarray` makes it an
         array. seconds: wall-clock seconds by stage, e.g. {"build": 0.01, "render": 0.04}, in the order they ran.
         statistics: the renderer's own counters, e.g. {"rays": 1862000, "threads": 2}.
-        passes: where it was stopped, and some passes were whole: these.
+        passes: those that are whole, of a picture that is drawn in passes.
 
     """
 
@@ -107,6 +106,8 @@ class Renderer(Protocol):
 class PassRenderer(Renderer, Protocol):
     """A renderer that draws long pictures in passes."""
 
+    in_passes: ClassVar[bool]
+
     def render(
         self, scene: Scene, settings: Settings, progress: Progress | None = None, start: Passes | None = None
     ) -> Rendering:
@@ -121,7 +122,7 @@ class PassRenderer(Renderer, Protocol):
 
 def draws_in_passes(renderer: Renderer) -> TypeGuard[PassRenderer]:
     """Whether a renderer draws in passes."""
-    return "start" in signature(renderer.render).parameters
+    return getattr(renderer, "in_passes", False)
 
 
 class RayTeller(Renderer, Protocol):

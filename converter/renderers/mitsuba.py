@@ -5,7 +5,7 @@ import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
 from converter.renderers.base import Interrupted, Passes, Progress, RendererUnavailable, Rendering, ResumeError
 from converter.renderers.records import PixelRecord
@@ -28,6 +28,8 @@ class MitsubaRenderer:
         fineness: what meshes may be off by; only with "offset" and "ulp" can spheres be meshes.
 
     """
+
+    in_passes: ClassVar[bool] = True
 
     variant: str = "auto"
     intersections: Intersections = "auto"
@@ -54,7 +56,7 @@ class MitsubaRenderer:
         variant = self._start()
         ready = time.perf_counter()
         if start is not None and start.notes["variant"] != variant:
-            raise ResumeError(f"it was drawn in {start.notes['variant']}, and this is {variant}")
+            raise ResumeError(f"it was begun in {start.notes['variant']}, and this is {variant}: --variant chooses one")
         mitsuba_scene = self._load(scene, settings)
         built = time.perf_counter()
 
@@ -138,8 +140,8 @@ def _sums_to_go_on_from(start: Passes | None, pixels: Any) -> Any:
 
 
 def _whole_passes(sums: Any, shape: tuple[int, ...], passes: list[list[int]], variant: str) -> Passes | None:
-    """What is drawn in whole passes, if some are, and not all."""
-    if sums is None or not 0 < sums.passes < len(passes):
+    """What is drawn in whole passes, if any are."""
+    if sums is None or sums.passes == 0:
         return None
     import numpy as np
 

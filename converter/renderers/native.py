@@ -5,7 +5,7 @@ import time
 from collections.abc import Sequence
 from dataclasses import dataclass
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from converter.analysis.coplanar import with_planes_shared
 from converter.pigments.table import pigment_kind
@@ -37,6 +37,8 @@ class NativeRenderer:
 
     """
 
+    in_passes: ClassVar[bool] = True
+
     precision: Precision = "double"
     search: Search = "auto"
 
@@ -66,7 +68,7 @@ class NativeRenderer:
             statistics = image.statistics
             rays = sum(statistics[kind] for kind in ("primary", "reflected", "transmitted", "shadow"))
             whole = None
-            if sums is not None and 0 < sums.passes < len(passes):
+            if sums is not None and sums.passes > 0:
                 whole = Passes(sums.passes, len(passes), sums.colors, sums.too_deep, {"counts": sums.counts})
             return Rendering(image.pixels, image.width, image.height, seconds, {"rays": rays, **statistics}, whole)
 

@@ -439,7 +439,8 @@ class Whitted(mi.SamplingIntegrator):
                 more = min(pace.passes(width * height * size), len(all_passes) - self.sums.passes)
                 begin, end = self.sums.passes * size, (self.sums.passes + more) * size
                 bands = []
-                for first, color, too_deep in self._stage(sensor, pace, tables, begin, end, self.sums, progress):
+                sums = self.sums if begin else None
+                for first, color, too_deep in self._stage(sensor, pace, tables, begin, end, sums, progress):
                     bands.append((*color, too_deep if self.depth_limited else dr.zeros(mi.Bool, dr.width(color))))
                     yield first, mi.Color3f(quotient(color, end))
                 red, green, blue, too_deep = (dr.concat(parts) for parts in zip(*bands, strict=True))
@@ -454,8 +455,8 @@ class Whitted(mi.SamplingIntegrator):
         return column(mi.Float64, [offsets[cell] for cell in cells]), mi.UInt32(cells)
 
     def _stage(self, sensor, pace, tables, begin, end, sums, progress):
-        """Draw samples from `begin` to `end` of all pixels, in bands of rows, and add them to what `sums` (PassSums) has
-        of the pixel, if given.
+        """Draw samples from `begin` to `end` of all pixels, in bands of rows, and add them to what `sums` (PassSums), if
+        given, has of the pixel.
 
         Yields:
             The first row of a finished band, the sums of its pixels' colours (Color3d), and where the depth limit
