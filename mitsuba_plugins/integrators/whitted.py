@@ -455,8 +455,8 @@ class Whitted(mi.SamplingIntegrator):
         return column(mi.Float64, [offsets[cell] for cell in cells]), mi.UInt32(cells)
 
     def _stage(self, sensor, pace, tables, begin, end, sums, progress):
-        """Draw samples from `begin` to `end` of all pixels, in bands of rows, and add them to what `sums` (PassSums), if
-        given, has of the pixel.
+        """Draw samples from `begin` to `end` of all pixels, in bands of rows, and add them to what is in `sums`
+        (PassSums), if given.
 
         Yields:
             The first row of a finished band, the sums of its pixels' colours (Color3d), and where the depth limit
