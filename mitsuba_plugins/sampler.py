@@ -91,7 +91,8 @@ class Sample:
 
     def square(self, number: type, path: Any, use: Any) -> tuple[Any, Any]:
         """Its point of the unit square, as the type `number`, for one use and one ray of its tree."""
-        x, y = sample_point(self.pixel, self.number, path, use)
+        word = type(self.pixel)
+        x, y = sample_point(self.pixel, self.number, word(path), word(use))
         return unit_interval(number, x), unit_interval(number, y)
 
 

@@ -28,8 +28,12 @@ class Scene:
     """A scene to be built, element by element; indices count from 0."""
 
     def __init__(self) -> None: ...
-    def set_camera(self, eye: _Triple, look_at: _Triple, up: _Triple, fovy: float) -> None:
-        """The camera; `up` is a vector, `fovy` the full vertical angle in degrees."""
+    def set_camera(
+        self, eye: _Triple, look_at: _Triple, up: _Triple, fovy: float, aperture: float = 0.0, focal: float = 1.0
+    ) -> None:
+        """The camera; `up` is a vector, `fovy` the full vertical angle in degrees, `aperture` the lens's radius, and
+        what lies at distance `focal` along the view direction is in focus.
+        """
 
     def set_ambient(self, color: _Triple) -> None:
         """The ambient light's colour."""
@@ -49,8 +53,20 @@ class Scene:
     def add_texmap(self, width: int, height: int, texels: Buffer, p0: _Quadruple, p1: _Quadruple) -> int:
         """Add an image pigment, and return its index; `texels` is a buffer of height x width x 3 float32."""
 
-    def add_finish(self, ka: float, kd: float, ks: float, alpha: float, kr: float, kt: float, eta: float) -> int:
-        """Add a finish, and return its index; `eta` is n1/n2, outside over inside."""
+    def add_finish(
+        self,
+        ka: float,
+        kd: float,
+        ks: float,
+        alpha: float,
+        kr: float,
+        kt: float,
+        eta: float,
+        cone: float = 0.0,
+    ) -> int:
+        """Add a finish, and return its index; `eta` is n1/n2, outside over inside, `cone` the half-angle, in degrees,
+        of the cone in which mirrored and transmitted rays are spread.
+        """
 
     def add_sphere(self, pigment: int, finish: int, center: _Triple, radius: float) -> int:
         """Add a sphere, and return its index."""

@@ -42,7 +42,7 @@ CAUSES = {
     "glossy rays": "scene:16: finish 1 has a cone",
     "motion": "scene:20: object 1 moves",
 }
-DRAWN = {"soft shadows"}
+DRAWN = set(EFFECTS) - {"motion"}
 """What the renderers draw."""
 
 

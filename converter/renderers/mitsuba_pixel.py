@@ -32,11 +32,9 @@ def trace_pixels(scene: Any, pixels: Sequence[tuple[int, int]]) -> list[PixelRec
     with integrator.prepared(scene, sensor):
         key = integrator.pixel_key(mi.Point2d(column(mi.Float64, columns), column(mi.Float64, rows)))
         number = column(mi.UInt32, np.tile(np.arange(len(offsets)), len(pixels)))
-        rays = _Rays.of(
-            integrator.primary_ray(sensor, mi.Point2d(column(mi.Float64, x), column(mi.Float64, y))),
-            (key, number, mi.UInt32(PRIMARY_PATH)),
-            len(x),
-        )
+        position = mi.Point2d(column(mi.Float64, x), column(mi.Float64, y))
+        primary = integrator.primary_ray(sensor, position, Sample(key, number))
+        rays = _Rays.of(primary, (key, number, mi.UInt32(PRIMARY_PATH)), len(x))
         roots = _Tracer(integrator).trees(rays)
     result = []
     for i, pixel in enumerate(pixels):
@@ -140,8 +138,8 @@ class _Tracer:
         dr.make_opaque(hit)
         finish, pigment = integrator.material(ray, hit)
         dr.make_opaque(finish, pigment)
-        through, total = integrator.transmitted(ray, hit, finish.eta)
-        mirrored = integrator.reflected(ray, hit)
+        through, total = integrator.transmitted(ray, hit, finish, sample, path)
+        mirrored = integrator.reflected(ray, hit, finish, sample, path)
         depth = level[0].depth + 1
         throughput = column(integrator.types.Float, [record.throughput for record in level])
         mirror_throughput, mirrors, through_throughput, refracts = integrator.followed(

@@ -22,7 +22,7 @@ if TYPE_CHECKING:
 
 Precision = Literal["float", "double", "long double"]
 Search = Literal["auto", "brute", "bvh"]
-EFFECTS: tuple[Effect, ...] = ("soft shadows",)
+EFFECTS: tuple[Effect, ...] = ("soft shadows", "glossy rays", "depth of field")
 """What of distributed ray tracing it draws."""
 
 
@@ -159,7 +159,9 @@ def build_scene(scene: Scene, needs: SceneNeeds) -> Any:
     """
     refuse_effects(needs, "the native tracer", EFFECTS)
     native = native_module().Scene()
-    native.set_camera(scene.camera.eye, scene.camera.look_at, scene.camera.up, scene.camera.fovy)
+    camera = scene.camera
+    lens = (camera.aperture, camera.focal) if camera.aperture else ()
+    native.set_camera(camera.eye, camera.look_at, camera.up, camera.fovy, *lens)
     native.set_ambient(scene.ambient)
     native.set_background(needs.background)
     if needs.lit:
@@ -169,7 +171,7 @@ def build_scene(scene: Scene, needs: SceneNeeds) -> Any:
     finishes = {}
     for i in needs.finishes:
         f = scene.finishes[i]
-        finishes[i] = native.add_finish(f.ka, f.kd, f.ks, f.alpha, f.kr, f.kt, needs.etas[i])
+        finishes[i] = native.add_finish(f.ka, f.kd, f.ks, f.alpha, f.kr, f.kt, needs.etas[i], f.cone)
     for o, facts in zip(with_planes_shared(scene).objects, needs.facts, strict=True):
         shape_kind(o.shape).add_to(native, o.shape, facts, pigments[o.pigment], finishes[o.finish])
     return native

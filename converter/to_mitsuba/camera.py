@@ -14,6 +14,7 @@ def sensor(camera: Camera, settings: Settings, samples: int) -> dict[str, Any]:
         "look_at": list(camera.look_at),
         "up": list(camera.up),
         "fovy": camera.fovy,
+        **({"aperture": camera.aperture, "focal": camera.focal} if camera.aperture else {}),
         "pixel_offset": -0.5 if settings.pixel == "corner" else 0.0,
         "film": {
             "type": "hdrfilm",

@@ -18,5 +18,6 @@ def bsdf(finish: Finish, eta: float, pigment: dict[str, Any], settings: Settings
         "kr": finish.kr,
         "kt": finish.kt,
         "eta": eta,
+        **({"cone": finish.cone} if finish.cone else {}),
         "blinn": settings.specular == "blinn",
     }

@@ -78,7 +78,7 @@ class Meshing:
         camera, rows = self.scene.camera, self.settings.height * math.isqrt(self.settings.rays_a_pixel())
         pixel = 2 * math.tan(math.radians(camera.fovy) / 2) / rows
         near = math.dist(camera.eye, camera.look_at) / NEAR
-        most = most_triangles(self.settings.width * self.settings.height * self.settings.samples)
+        most = most_triangles(self.settings.width * self.settings.height * self.settings.rays_a_pixel())
         return View(camera.eye, near, pixel * self.fineness.pixels / USUAL.pixels, most)
 
     @cached_property

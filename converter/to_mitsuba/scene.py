@@ -17,7 +17,7 @@ from converter.to_mitsuba.integrator import Intersections, RayPrecision, integra
 from converter.to_mitsuba.lights import light
 from converter.to_mitsuba.surfaces import exact_surfaces, material_name, shapes
 
-EFFECTS: tuple[Effect, ...] = ("soft shadows",)
+EFFECTS: tuple[Effect, ...] = ("soft shadows", "glossy rays", "depth of field")
 """What of distributed ray tracing the integrator draws."""
 
 

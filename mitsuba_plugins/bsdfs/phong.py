@@ -3,6 +3,7 @@
 import drjit as dr
 import mitsuba as mi
 
+from mitsuba_plugins import sampler as samples
 from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.intersection.rays import power, unit
 
@@ -33,6 +34,11 @@ class Phong(mi.BSDF):
        - |float|
        - Index of refraction outside over inside, :math:`n_1/n_2` (Default: 1)
 
+     * - cone
+       - |float|
+       - Half-angle, in degrees, of the cone in which mirrored and refracted rays are spread, uniform in solid angle
+         (Default: 0)
+
      * - blinn
        - |bool|
        - Highlight :math:`(n \cdot h)^\alpha` instead of :math:`(r \cdot v)^\alpha` (Default: false)
@@ -43,7 +49,7 @@ class Phong(mi.BSDF):
     makes it conserve energy or be reciprocal.
     """
 
-    COEFFICIENTS = ("ka", "kd", "ks", "alpha", "kr", "kt", "eta")
+    COEFFICIENTS = ("ka", "kd", "ks", "alpha", "kr", "kt", "eta", "cone")
 
     def __init__(self, props):
         mi.BSDF.__init__(self, props)
@@ -61,6 +67,11 @@ class Phong(mi.BSDF):
             mi.BSDFFlags.DeltaTransmission | sides | mi.BSDFFlags.NonSymmetric,
         ]
         self.m_flags = self.m_components[0] | self.m_components[1] | self.m_components[2] | self.m_components[3]
+
+    @property
+    def versine(self):
+        """1 - cos of the cone's half-angle (Float64)."""
+        return 2 * dr.square(dr.sin(dr.deg2rad(self.cone) * 0.5))
 
     # ------------------------------------------------------------------ lobes
 
@@ -141,7 +152,11 @@ class Phong(mi.BSDF):
         wo[lobe == 2] = mi.reflect(wi)
         wo[lobe == 3] = refracted
 
+        # A cone's directions are no density's to other integrators, which take the lobe for one direction.
         delta = lobe >= 2
+        spread = samples.cone_direction(wo, mi.Float(self.versine), *sample2)
+        spread.z = dr.mulsign(dr.abs(spread.z), wo.z)
+        wo[delta & (self.cone > 0)] = spread
         pdf = dr.select(delta, quotient(dr.select(lobe == 2, weights[2], weights[3]), total), self._pdf(ctx, wi, wo))
         value = dr.select(delta, mi.Color3f(total), quotient(self._eval(ctx, si, wi, wo, active), pdf))
         valid = active & (total > 0) & (pdf > 0) & (delta | (wo.z > 0))

@@ -27,6 +27,7 @@ class Finish:
     kr: Any
     kt: Any
     eta: Any
+    versine: Any  # 1 - cos of half the angle of the cone in which rays are spread
 
 
 @dataclass
@@ -55,17 +56,18 @@ class Materials:
         self._colors = [_color_function(texture) for texture in textures.values()]
         self.has_edges = any(hasattr(t, "color_at") and t.is_spatially_varying() for t in textures.values())
         """Whether a pigment's colour changes from one point to the next, so that it matters how far points are off."""
-        zero, rows = mi.Float64(0), finishes.values()
-        numbers = [n for f in rows for n in (f.ka, f.kd, f.ks, f.alpha, f.kr, f.kt, f.eta, zero)]
-        self._numbers = types.Float(dr.concat(numbers or [zero] * 8))
+        self.spread = any(bsdf.cone[0] > 0 for bsdf in finishes.values())
+        """Whether rays are spread in a cone."""
+        numbers = [n for f in finishes.values() for n in (f.ka, f.kd, f.ks, f.alpha, f.kr, f.kt, f.eta, f.versine)]
+        self._numbers = types.Float(dr.concat(numbers or [mi.Float64(0)] * 8))
         dr.make_opaque(self._numbers)
 
     def finish(self, index: Any, active: Any) -> Finish:
         """The finish of an object."""
         row = dr.gather(mi.UInt32, self._finish, index, active)
         ka, kd, ks, alpha = dr.gather(self._types.Vector4, self._numbers, 2 * row, active)
-        kr, kt, eta, _ = dr.gather(self._types.Vector4, self._numbers, 2 * row + 1, active)
-        return Finish(ka, kd, ks, alpha, kr, kt, eta)
+        kr, kt, eta, versine = dr.gather(self._types.Vector4, self._numbers, 2 * row + 1, active)
+        return Finish(ka, kd, ks, alpha, kr, kt, eta, versine)
 
     def color(self, index: Any, p: Any, errors: Any, active: Any) -> Any:
         """An object's pigment (Color3) at a position (Point3), whose coordinates may be off by `errors` (Vector3)."""

@@ -43,6 +43,7 @@ from mitsuba_plugins.intersection.rounding import (
     epsilon,
     least_spread,
     most_blur,
+    most_camera_blur,
 )
 from native_tracer.passes import passes
 
@@ -93,7 +94,8 @@ class Whitted(mi.SamplingIntegrator):
 
      * - seed
        - |int|
-       - Start of the random numbers, where a light has a radius (Default: 0)
+       - Start of the random numbers, where something is sampled: a light with a radius, a finish with a cone, a sensor
+         with an aperture (Default: 0)
 
      * - reflection, refraction, branching
        - |bool|
@@ -188,10 +190,14 @@ class Whitted(mi.SamplingIntegrator):
         self._materials = Materials(self.types, [self._bsdfs.by_name[surface.material] for surface in self.surfaces])
         self._lights = Lights(self.types, scene.emitters())
         self.light_count = self._lights.count
-        self.sampled = self.shadows and bool(self._lights.radii.any())
+        self._soft_shadows = self.shadows and bool(self._lights.radii.any())
+        self._spreads = self._materials.spread and (self.reflection or self.refraction)
+        self._has_lens = getattr(sensor, "has_lens", False)
+        self.sampled = self._soft_shadows or self._spreads or self._has_lens
         contacts = Contacts(self.surfaces)
         self._light_contacts = LightContacts(self.types, contacts, self._lights.positions, self._lights.radii)
-        self._eye_contact = EyeContact(self.types, contacts, np.ravel(sensor.eye)) if hasattr(sensor, "eye") else None
+        on_something = hasattr(sensor, "eye") and not self._has_lens
+        self._eye_contact = EyeContact(self.types, contacts, np.ravel(sensor.eye)) if on_something else None
         self._errors_of_primary_rays = camera_errors(self.types, sensor)
         if self.intersections == "analytic":
             self._tracer = AnalyticSurfaces(self.types, self.surfaces, primitives, self._light_contacts)
@@ -229,7 +235,7 @@ class Whitted(mi.SamplingIntegrator):
         position, radius, emission, (a, b, c) = self._lights.get(index, active)
         to_light = position - hit.p
         error = hit.error
-        if self.sampled:
+        if self._soft_shadows:
             square = sample.square(self.types.Float, path, samples.FIRST_LIGHT + index)
             to_light, error = _to_disc(to_light, position, radius, square, error)
         distance = dr.norm(to_light)
@@ -259,17 +265,36 @@ class Whitted(mi.SamplingIntegrator):
         cosine = dr.dot(n, unit(to_light - ray.d)) if self._materials.blinn else dr.dot(reflect(ray.d, n), to_light)
         return power(dr.minimum(dr.maximum(cosine, 0), 1), alpha)  # what is rounded above 1 has no bounds
 
-    def reflected(self, ray: Ray, hit: Hit) -> Ray:
-        """The mirrored ray."""
-        return self._tracer.spawn(hit, reflect(ray.d, hit.n), hit.inside, mirrored_spread(ray, hit))
+    def reflected(self, ray: Ray, hit: Hit, finish: Finish, sample, path) -> Ray:
+        """The ray that follows a `sample`'s ray of that path in the mirror direction."""
+        spread = mirrored_spread(ray, hit)
+        return self._spawn(hit, reflect(ray.d, hit.n), hit.inside, spread, finish, sample, path, samples.MIRRORED_CONE)
 
-    def transmitted(self, ray: Ray, hit: Hit, eta) -> tuple[Ray, Any]:
+    def transmitted(self, ray: Ray, hit: Hit, finish: Finish, sample, path) -> tuple[Ray, Any]:
         """The refracted ray, or the mirrored one past the critical angle, and whether it is past."""
-        eta = dr.select(hit.inside, quotient(1, eta), eta)
+        eta = dr.select(hit.inside, quotient(1, finish.eta), finish.eta)
         n = dr.select(hit.inside, -hit.n, hit.n)
         d, total, spread = refract(ray.d, n, eta, dr.minimum(ray.spread + hit.lean, most_blur(ray.spread)))
         spread = dr.select(total, mirrored_spread(ray, hit), spread)
-        return self._tracer.spawn(hit, d, hit.inside == total, spread), total
+        inside = hit.inside == total
+        return self._spawn(hit, d, inside, spread, finish, sample, path, samples.REFRACTED_CONE), total
+
+    def _spawn(self, hit: Hit, d, inside, spread, finish: Finish, sample, path, use) -> Ray:
+        """The ray that leaves a hit in direction `d`, or uniform in the cone about it, where the finish has one.
+
+        A direction in the cone that leads to the other side of the tangent plane is mirrored in that.
+        """
+        if self._spreads:
+            square = sample.square(self.types.Float, path, use)
+            direction = samples.cone_direction(d, finish.versine, *square)
+            n = dr.select(inside, -hit.n, hit.n)
+            direction = unit(direction - n * (2 * dr.minimum(dr.dot(n, direction), 0)))
+            spreads = finish.versine > 0
+            d = dr.select(spreads, direction, d)
+            # By eight times at most do the frame's axes turn faster than its axis.
+            more = dr.minimum(8 * spread + 2 * hit.lean, most_blur(spread))
+            spread = dr.select(spreads, more, spread)
+        return self._tracer.spawn(hit, d, inside, spread)
 
     # ------------------------------------------------------------------ the ray tree
 
@@ -303,7 +328,8 @@ class Whitted(mi.SamplingIntegrator):
                 too_deep |= hit.valid & (depth > self.max_depth) & (heavier > 0) & (heavier >= self.cutoff)
             active = mirrors | refracts
             if dr.hint(self.branching, mode="scalar"):
-                through, mirrored = self.transmitted(ray, hit, finish.eta)[0], self.reflected(ray, hit)
+                through = self.transmitted(ray, hit, finish, sample, path)[0]
+                mirrored = self.reflected(ray, hit, finish, sample, path)
                 pushes = mirrors & refracts
                 # The lighter one first, which has the smaller tree below it: so few rays wait.
                 mirrors_first = mirrors & ~(refracts & (finish.kt < finish.kr))
@@ -328,20 +354,21 @@ class Whitted(mi.SamplingIntegrator):
                     path = dr.select(resumes, waiting_path, path)
                 active |= resumes
             elif dr.hint(self.reflection and self.refraction, mode="scalar"):
+                weight = dr.select(mirrors, mirror_weight, through_weight)
+                through = self.transmitted(ray, hit, finish, sample, path)[0]
+                ray = dr.select(mirrors, self.reflected(ray, hit, finish, sample, path), through)
                 if dr.hint(self.sampled, mode="scalar"):
                     path = 2 * path + dr.select(mirrors, mi.UInt32(0), 1)
-                weight = dr.select(mirrors, mirror_weight, through_weight)
-                ray = dr.select(mirrors, self.reflected(ray, hit), self.transmitted(ray, hit, finish.eta)[0])
             elif dr.hint(self.reflection, mode="scalar"):
+                weight = mirror_weight
+                ray = self.reflected(ray, hit, finish, sample, path)
                 if dr.hint(self.sampled, mode="scalar"):
                     path = 2 * path
-                weight = mirror_weight
-                ray = self.reflected(ray, hit)
             elif dr.hint(self.refraction, mode="scalar"):
+                weight = through_weight
+                ray = self.transmitted(ray, hit, finish, sample, path)[0]
                 if dr.hint(self.sampled, mode="scalar"):
                     path = 2 * path + 1
-                weight = through_weight
-                ray = self.transmitted(ray, hit, finish.eta)[0]
         return radiance, too_deep
 
     def followed(self, weight, depth, hit: Hit, finish: Finish):
@@ -502,7 +529,7 @@ class Whitted(mi.SamplingIntegrator):
             # One sample needs no loop, which takes twice as long to record.
             position = corner + dr.gather(mi.Point2d, offsets, mi.UInt32(0))
             number = samples.Sample(key, mi.UInt32(0))
-            more, deep = self.trace(self.primary_ray(sensor, position), number, True)
+            more, deep = self.trace(self.primary_ray(sensor, position, number), number, True)
             color += more
             too_deep |= deep
         else:
@@ -511,7 +538,7 @@ class Whitted(mi.SamplingIntegrator):
             while sample < end:
                 position = corner + dr.gather(mi.Point2d, offsets, sample)
                 number = samples.Sample(key, dr.gather(mi.UInt32, numbers, sample) if self.sampled else mi.UInt32(0))
-                more, deep = self.trace(self.primary_ray(sensor, position), number, True)
+                more, deep = self.trace(self.primary_ray(sensor, position, number), number, True)
                 color += more
                 too_deep |= deep
                 sample += 1
@@ -536,11 +563,21 @@ class Whitted(mi.SamplingIntegrator):
             raise ValueError(f"whitted: samples per pixel are laid out as a grid, and {spp} is no square number")
         return [((cell % n + 0.5) / n, (cell // n + 0.5) / n) for cell in range(spp)]
 
-    def primary_ray(self, sensor, position) -> Ray:
-        """The ray through a film position (Point2d, in pixels), in double precision where the sensor has it."""
+    def primary_ray(self, sensor, position, sample) -> Ray:
+        """The ray of a `sample` through a film position (Point2d, in pixels), in double precision where the sensor has
+        it.
+        """
         if hasattr(sensor, "primary_ray"):
-            o, d = sensor.primary_ray(position)
             error, spread = self._errors_of_primary_rays
+            if self._has_lens:
+                square = sample.square(mi.Float64, samples.PRIMARY_PATH, samples.LENS)
+                o, d = sensor.primary_ray(position, samples.disc_point(*square))
+                error = error + 8 * epsilon(error) * self.types.Float(largest(o) + sensor.aperture)
+                # The nearer the plane in focus, in radii of the lens, the more a direction changes with its two ends.
+                spread = quotient(4 * (spread + least_spread(spread)), self.types.Float(sensor.relative_focal))
+                spread = dr.minimum(spread, most_camera_blur(spread))
+            else:
+                o, d = sensor.primary_ray(position)
             ray = start_ray(self.types, o, d, error, spread)
             return ray if self._eye_contact is None else self._eye_contact.start(ray)
         size, offset = sensor.film().crop_size(), sensor.film().crop_offset()

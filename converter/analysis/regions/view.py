@@ -82,7 +82,7 @@ def _too_long(s: Situation, shares: Floats, limit: float) -> Iterator[Finding]:
 def _fine_meshes(s: Situation, limit: float) -> Iterator[Finding]:
     """Curved bodies that are meshes, and larger than as many pixels as their triangles can be made for."""
     settings = s.settings
-    most = most_triangles(settings.width * settings.height * settings.samples)
+    most = most_triangles(settings.width * settings.height * settings.rays_a_pixel())
     bodies = s.bodies
     shares = np.full(len(s.scene.objects), np.inf)
     distance = np.maximum(np.linalg.norm(bodies.center - s.eye, axis=1) - bodies.radius, 0)

@@ -171,11 +171,15 @@ void bind_scene(nb::module_& module) {
         .def(nb::init<>())
         .def(
             "set_camera",
-            [](SceneDescription& scene, const Triple& eye, const Triple& look_at, const Triple& up, double fovy) {
-                scene.camera = {finite(eye, "eye"), finite(look_at, "look_at"), finite(up, "up"),
-                                positive(fovy, "fovy")};
+            [](SceneDescription& scene, const Triple& eye, const Triple& look_at, const Triple& up, double fovy,
+               double aperture, double focal) {
+                scene.camera = {finite(eye, "eye"),     finite(look_at, "look_at"),         finite(up, "up"),
+                                positive(fovy, "fovy"), not_negative(aperture, "aperture"), positive(focal, "focal")};
             },
-            "eye"_a, "look_at"_a, "up"_a, "fovy"_a, "The camera; `up` is a vector, `fovy` the full angle in degrees.")
+            "eye"_a, "look_at"_a, "up"_a, "fovy"_a, "aperture"_a = 0.0, "focal"_a = 1.0,
+            "The camera; `up` is a vector, `fovy` the full angle in degrees, `aperture` the lens's radius, and what "
+            "lies\n"
+            "at distance `focal` along the view direction is in focus.")
         .def(
             "set_ambient",
             [](SceneDescription& scene, const Triple& color) { scene.ambient = finite(color, "ambient"); }, "color"_a,
@@ -212,14 +216,19 @@ void bind_scene(nb::module_& module) {
              "Add an image pigment, and return its index; `texels` is a buffer of height x width x 3 float32.")
         .def(
             "add_finish",
-            [](SceneDescription& scene, double ka, double kd, double ks, double alpha, double kr, double kt,
-               double eta) {
+            [](SceneDescription& scene, double ka, double kd, double ks, double alpha, double kr, double kt, double eta,
+               double cone) {
                 finite(std::array{ka, kd, ks, alpha, kr, kt}, "a finish");
+                if (!(cone >= 0 && cone <= 90)) {
+                    throw std::invalid_argument("cone must lie in 0..90");
+                }
                 return append(scene.finishes,
-                              whitted::FinishDescription{ka, kd, ks, alpha, kr, kt, positive(eta, "eta")});
+                              whitted::FinishDescription{ka, kd, ks, alpha, kr, kt, positive(eta, "eta"), cone});
             },
-            "ka"_a, "kd"_a, "ks"_a, "alpha"_a, "kr"_a, "kt"_a, "eta"_a,
-            "Add a finish, and return its index; `eta` is n1/n2, outside over inside.")
+            "ka"_a, "kd"_a, "ks"_a, "alpha"_a, "kr"_a, "kt"_a, "eta"_a, "cone"_a = 0.0,
+            "Add a finish, and return its index; `eta` is n1/n2, outside over inside, `cone` the half-angle, in "
+            "degrees,\n"
+            "of the cone in which mirrored and transmitted rays are spread.")
         .def(
             "add_sphere",
             [](SceneDescription& scene, int pigment, int finish, const Triple& center, double radius) {

@@ -1,4 +1,4 @@
-// The pinhole camera.
+// The camera: a pinhole, or a thin lens.
 
 #pragma once
 
@@ -7,7 +7,9 @@
 #include <numbers>
 
 #include "tracing/description.h"
+#include "tracing/ray.h"
 #include "tracing/rounding.h"
+#include "tracing/sampler.h"
 #include "tracing/vector.h"
 
 namespace whitted::WHITTED_ISA {
@@ -52,7 +54,10 @@ class Camera {
           up_(cross(right_, forward_)),
           width_(static_cast<Real>(width)),
           height_(static_cast<Real>(height)),
-          scale_(std::tan(static_cast<Real>(camera.fovy) * std::numbers::pi_v<Real> / 360) / height_) {}
+          scale_(std::tan(static_cast<Real>(camera.fovy) * std::numbers::pi_v<Real> / 360) / height_),
+          aperture_(static_cast<Real>(camera.aperture)),
+          lens_(static_cast<Real>(camera.aperture / std::max(camera.aperture, camera.focal))),
+          focal_(static_cast<Real>(camera.focal / std::max(camera.aperture, camera.focal))) {}
 
     const Vector<Real>& eye() const { return eye_; }
 
@@ -69,12 +74,30 @@ class Camera {
         return normalize(Vector<L>(forward_) + x * Vector<L>(right_) + y * Vector<L>(up_));
     }
 
+    bool has_lens() const { return aperture_ > 0; }
+
+    // Moves rays from the eye to points of the lens, given on the unit disc: they meet where they would on the plane in
+    // focus.
+    void move_to_lens(Rays<Real>& rays, const PlanePoint<Real>& point) const {
+        using L = Lanes<Real>;
+        const Vector<L> across = point.x * Vector<L>(right_) + point.y * Vector<L>(up_);
+        const L cosine = dot(rays.direction, Vector<L>(forward_));
+        rays.origin = rays.origin + L(aperture_) * across;
+        rays.direction = normalize(L(focal_) * rays.direction - (cosine * L(lens_)) * across);
+        rays.reach = max_norm(rays.origin);
+        rays.t_min = L(eye_error_) + L(8 * tie_epsilon<Real>) * (rays.reach + L(aperture_));
+        // The nearer the plane in focus, in radii of the lens, the more a direction changes with its two ends.
+        rays.spread = min(L(4 * spread_ / focal_), L(most_camera_blur<Real>));
+    }
+
  private:
     Vector<Real> eye_;
     Real eye_error_, spread_;
     Vector<Real> forward_, right_, up_;
     Real width_, height_;
     Real scale_;  // half a pixel, on the plane at distance 1
+    Real aperture_;
+    Real lens_, focal_;  // the lens's radius and the distance of what is in focus, over the larger of the two
 };
 
 }  // namespace whitted::WHITTED_ISA

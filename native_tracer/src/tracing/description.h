@@ -19,7 +19,9 @@ struct CameraDescription {
     Triple eye{0, 0, 0};
     Triple look_at{0, 0, -1};
     Triple up{0, 1, 0};
-    double fovy = 90;  // degrees, the full vertical angle
+    double fovy = 90;     // degrees, the full vertical angle
+    double aperture = 0;  // radius of the lens; 0: a pinhole
+    double focal = 1;     // distance, along the view direction, of what is in focus
 };
 
 struct LightDescription {
@@ -48,7 +50,8 @@ using PigmentDescription = std::variant<SolidDescription, CheckerDescription, Te
 
 struct FinishDescription {
     double ka, kd, ks, alpha, kr, kt;
-    double eta;  // n1/n2, outside over inside
+    double eta;       // n1/n2, outside over inside
+    double cone = 0;  // degrees, half the angle of the cone in which mirrored and transmitted rays are spread
 };
 
 struct SphereDescription {

@@ -47,6 +47,13 @@ class PrimaryRays {
         }
     }
 
+    bool have_lens() const { return camera_.has_lens(); }
+
+    // Moves rays from the eye to points of the lens, given on the unit disc.
+    void move_to_lens(Group<Real>& group, const PlanePoint<Real>& point) const {
+        camera_.move_to_lens(group.rays, point);
+    }
+
     // The next rays of the row, as many as there are lanes and pixels left.
     Group<Real> next() {
         using L = Lanes<Real>;

@@ -6,6 +6,7 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <numbers>
 #include <vector>
 
 #include "search/search.h"
@@ -57,7 +58,8 @@ struct Light {
 template <typename Real>
 struct Finish {
     Real ka, kd, ks, alpha, kr, kt;
-    Real eta;  // n1/n2, outside over inside
+    Real eta;      // n1/n2, outside over inside
+    Real versine;  // 1 - cos of half the angle of the cone in which rays are spread
 };
 
 template <typename Real>
@@ -107,8 +109,9 @@ template <typename Real>
 struct Scene {
     Color<Real> ambient, background;
     bool sampled = false;  // something is random
+    bool spreads = false;  // some finish spreads rays
     View<Real> eye_view;
-    EyeContact<Real> eye_contact;
+    EyeContact<Real> eye_contact;  // of a camera without a lens
     std::vector<Light<Real>> lights;
     std::vector<Pigment<Real>> pigments;
     std::vector<Object<Real>> objects;
@@ -316,12 +319,16 @@ void Scene<Real>::add_objects(const SceneDescription& description) {
     int primitive = 0;
     for (const ObjectDescription& object : description.objects) {
         const FinishDescription& f = description.finishes[static_cast<std::size_t>(object.finish)];
-        objects.push_back({{real(f.ka), real(f.kd), real(f.ks), real(f.alpha), real(f.kr), real(f.kt), real(f.eta)},
+        const double sine = std::sin(f.cone * std::numbers::pi / 360);
+        objects.push_back({{real(f.ka), real(f.kd), real(f.ks), real(f.alpha), real(f.kr), real(f.kt), real(f.eta),
+                            real(2 * sine * sine)},
                            &pigments[static_cast<std::size_t>(object.pigment)],
                            primitive,
                            {}});
         primitive += Shapes<Real>::primitive_count(object.shape);
+        spreads |= f.cone > 0;
     }
+    sampled |= spreads;
 }
 
 // Primitives are numbered in the order of the file, shapes are kept in that of the search.
@@ -351,7 +358,11 @@ void Scene<Real>::add_shapes(const SceneDescription& description, const SearchPl
 template <typename Real>
 void Scene<Real>::add_eye(const SceneDescription& description) {
     const Triple& eye = description.camera.eye;
-    eye_view = shapes.view_from(apart, vector_of<Real>(eye));
+    eye_view = shapes.view_from(apart, vector_of<Real>(eye), static_cast<Real>(description.camera.aperture));
+    if (description.camera.aperture > 0) {
+        sampled = true;
+        return;
+    }
     for (const Contact<Real>& contact : contacts_of(description, eye)) {
         if (eye_contact.object < 0 && contact.on_body) {
             eye_contact.object = contact.object;

@@ -81,6 +81,8 @@ class Tracer {
     L highlight(const Rays<Real>& rays, const Hits<Real>& hits, const Surface<Real>& surface, const Vector<L>& to_light,
                 L cosine, Mask<Real> wanted) const;
     void follow(const Group<Real>& group, const Hits<Real>& hits, const Surface<Real>& surface);
+    [[gnu::noinline]] void spread_out(const Group<Real>& group, const Hits<Real>& hits, const Surface<Real>& surface,
+                                      std::uint32_t use, Turn& turn) const;
     Turn mirror(const Rays<Real>& rays, const Hits<Real>& hits, const Surface<Real>& surface, L cosine) const;
     Turn refract(const Rays<Real>& rays, const Hits<Real>& hits, const Surface<Real>& surface, L cosine,
                  const Turn& mirrored, Mask<Real>& total) const;
@@ -120,6 +122,10 @@ bool Tracer<Real, Observer>::trace(PrimaryRays primary_rays, Color<Sum>* sums, R
             std::size_t traced = 0;
             do {
                 Group<Real> group = primary_rays.next();
+                if (primary_rays.have_lens()) [[unlikely]] {
+                    const PlanePoint<Real> square = sample(group, use::lens);
+                    primary_rays.move_to_lens(group, disc_point(square.x, square.y));
+                }
                 observer_.primary(group);
                 trace_group(group, &scene_.eye_view);
                 traced += static_cast<std::size_t>(count(group.active));
@@ -327,8 +333,12 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
     successors.depth = group.depth + Indices<Real>(1);
     successors.pixel = group.pixel;
     successors.record = group.record;
-    const auto push = [&](RayKind kind, const Turn& turn, L weight, Mask<Real> followed, RayStack<Real>& stack,
+    const auto push = [&](RayKind kind, Turn turn, L weight, Mask<Real> followed, RayStack<Real>& stack,
                           std::uint64_t& counter) {
+        if (scene_.spreads) [[unlikely]] {
+            const std::uint32_t use = kind == RayKind::reflected ? use::mirrored_cone : use::refracted_cone;
+            spread_out(group, hits, surface, use, turn);
+        }
         successors.rays.direction = turn.direction;
         successors.rays.spread = turn.spread;
         successors.rays.inside = turn.inside;
@@ -358,6 +368,30 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
     }
     for_each_distinct(successors.depth, reflects | transmits,
                       [&](int depth, int, Mask<Real>) { counts_->deepest = std::max(counts_->deepest, depth); });
+}
+
+// Directions that are uniform in the cone about those of `turn`, where the finish has one. Those that lead to the other
+// side of the surface's tangent plane are mirrored in that.
+template <typename Real, typename Observer>
+void Tracer<Real, Observer>::spread_out(const Group<Real>& group, const Hits<Real>& hits, const Surface<Real>& surface,
+                                        std::uint32_t use, Turn& turn) const {
+    const L zero = Real(0);
+    const L versine = L::gather([&](int lane) {
+        return hits.object[lane] < 0 ? Real(0)
+                                     : scene_.objects[static_cast<std::size_t>(hits.object[lane])].finish.versine;
+    });
+    const Mask<Real> spreads = versine > zero;
+    if (!any(spreads)) {
+        return;
+    }
+    const PlanePoint<Real> square = sample(group, use);
+    const Vector<L> direction = cone_direction(Frame<Real>(turn.direction), versine, square.x, square.y);
+    const Vector<L> normal = select(turn.inside, -surface.outward, surface.outward);
+    const L below = min(dot(normal, direction), zero);
+    turn.direction = select(spreads, normalize(direction - (L(2) * below) * normal), turn.direction);
+    // By eight times at most do the frame's axes turn faster than its axis.
+    const L spread = L(8) * turn.spread + L(2) * surface.lean;
+    turn.spread = select(spreads, min(spread, L(most_blur<Real>)), turn.spread);
 }
 
 template <typename Real, typename Observer>
