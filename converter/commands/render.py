@@ -6,9 +6,10 @@ from pathlib import Path
 
 from converter.commands.exits import OK, UsageError
 from converter.commands.method_options import add_method_options, check_variant, choose, native_instead
-from converter.commands.options import Parser, add_reading_options, add_running_options, add_size
+from converter.commands.options import Parser, add_reading_options, add_running_options, add_size, not_negative
 from converter.commands.results import Result, TextResult
 from converter.descriptors import STANDARD_OUTPUT
+from converter.scene.settings import SAMPLES
 
 
 def parser() -> Parser:
@@ -31,6 +32,7 @@ def parser() -> Parser:
     add_reading_options(result)
     add_running_options(result)
     add_method_options(result)
+    _add_adaptive_options(result)
     group = result.add_argument_group("what is told and kept")
     group.add_argument("-q", "--quiet", action="store_true", help="no notes, no progress bar, no closing line")
     group.add_argument(
@@ -56,6 +58,20 @@ def parser() -> Parser:
     return result
 
 
+def _add_adaptive_options(parser: Parser) -> None:
+    group = parser.add_argument_group("more samples where they matter")
+    group.add_argument(
+        "--adaptive",
+        type=not_negative,
+        metavar="LIMIT",
+        help=f"draw pixels with --samples rays ({SAMPLES}) that are unlike a neighbour, in what their rays meet or by "
+        "more than LIMIT of 255 levels, and the others with one",
+    )
+    group.add_argument(
+        "--adaptive-map", action=Result, metavar="FILE", help="draw which pixels these are, white on black"
+    )
+
+
 def _ending(text: str) -> str:
     return f".{text.lower().removeprefix('.')}"
 
@@ -65,19 +81,23 @@ def run(arguments: argparse.Namespace) -> int:
     check_variant(arguments, [arguments.method])
     method = choose(arguments.method, arguments)
 
+    from converter.commands.adapting import adapting
     from converter.commands.drawing import Keeping, draw
     from converter.commands.json_out import check_json, write_json
     from converter.commands.notes import say
-    from converter.files import is_special
+    from converter.files import check_target, is_special
     from converter.renderers.base import draws_in_passes
 
     check_json(arguments.json, [arguments.scene])
     keeping = Keeping(method.name, arguments.resume) if arguments.keep_partial or arguments.resume else None
+    if arguments.adaptive_map is not None:
+        check_target(arguments.adaptive_map, [arguments.scene, arguments.out])
     if arguments.resume and is_special(arguments.out):
         raise UsageError("--resume: OUT must be a file, with what was kept beside it")
     if arguments.resume and not draws_in_passes(method.renderer):
         raise UsageError(f"--resume: {method.name} draws a picture in one go")
-    quiet, settings = arguments.quiet, method.settings
+    chooser, settings = adapting(arguments, method)
+    quiet = arguments.quiet
     if quiet:
         import logging
 
@@ -92,7 +112,13 @@ def run(arguments: argparse.Namespace) -> int:
             keeping,
             arguments.method,
             arguments.format,
+            chooser,
         )
+    statistics = dict(rendering.statistics)
+    if chooser is not None:
+        statistics |= chooser.statistics()
+        if arguments.adaptive_map is not None:
+            chooser.write_map(arguments.adaptive_map)
     seconds = sum(stages.values())
     say(f"{arguments.out}: {settings.width} x {settings.height}, {method.name}, {seconds:.2f} s", quiet)
     if arguments.stats and arguments.json != STANDARD_OUTPUT:
@@ -100,10 +126,10 @@ def run(arguments: argparse.Namespace) -> int:
 
         rows = [(stage, f"{spent:.4f} s") for stage, spent in stages.items()]
         rows += [("all", f"{seconds:.4f} s")]
-        rows += [(name.replace("_", " "), str(value)) for name, value in rendering.statistics.items()]
+        rows += [(name.replace("_", " "), str(value)) for name, value in statistics.items()]
         rows += [("memory peak", f"{_memory_peak():.0f} MiB")]
         print_table(rows, align="lr")
-    statistics = {**rendering.statistics, "memory_peak_mib": _memory_peak()}
+    statistics["memory_peak_mib"] = _memory_peak()
     write_json(arguments.json, {"method": method.name, "seconds": stages, "statistics": statistics})
     return OK
 

@@ -125,6 +125,44 @@ def draws_in_passes(renderer: Renderer) -> TypeGuard[PassRenderer]:
     return getattr(renderer, "in_passes", False)
 
 
+Choose = Callable[[Any, Any], Any]
+"""From the signatures (height, width) uint32 and the colours (height, width, 3) float32 of pixels to those that are to
+be refined, (height, width) bool; all are NumPy arrays.
+"""
+
+
+class AdaptiveRenderer(Renderer, Protocol):
+    """A renderer that draws some pixels with more samples than others."""
+
+    def unfit_to_adapt(self) -> str | None:
+        """Why it cannot, as it is set; None if it can."""
+        ...
+
+    def render_adaptively(
+        self, scene: Scene, settings: Settings, choose: Choose, progress: Progress | None = None
+    ) -> Rendering:
+        """Draw `scene` with one sample a pixel, and those that `choose` then says with as many as `settings` tell.
+
+        Raises:
+            Interrupted: Ctrl-C while it was drawing.
+
+        """
+        ...
+
+
+def draws_adaptively(renderer: Renderer) -> TypeGuard[AdaptiveRenderer]:
+    """Whether a renderer may draw some pixels with more samples than others."""
+    return hasattr(renderer, "render_adaptively")
+
+
+def in_two_parts(progress: Progress | None, samples: int) -> tuple[Progress | None, Progress | None]:
+    """A `Progress` for a picture of one sample a pixel, and one for the pixels that are refined then; about a tenth."""
+    if progress is None:
+        return None, None
+    first = 1 / (1 + samples / 10)
+    return lambda share: progress(first * share), lambda share: progress(first + (1 - first) * share)
+
+
 class RayTeller(Renderer, Protocol):
     """A renderer that tells its rays."""
 

@@ -7,7 +7,16 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from typing import Any, ClassVar
 
-from converter.renderers.base import Interrupted, Passes, Progress, RendererUnavailable, Rendering, ResumeError
+from converter.renderers.base import (
+    Choose,
+    Interrupted,
+    Passes,
+    Progress,
+    RendererUnavailable,
+    Rendering,
+    ResumeError,
+    in_two_parts,
+)
 from converter.renderers.records import PixelRecord
 from converter.scene.model import Scene
 from converter.scene.settings import Settings
@@ -85,6 +94,64 @@ class MitsubaRenderer:
                 for first, color in bands:
                     rows = np.moveaxis(np.asarray(color), 0, -1).reshape(-1, settings.width, 3)
                     pixels[first : first + len(rows)] = rows
+        except KeyboardInterrupt:
+            raise Interrupted(rendering()) from None
+        except RuntimeError as error:
+            if _comes_from_interrupt(error):
+                raise Interrupted(rendering()) from None
+            raise
+        return rendering()
+
+    def unfit_to_adapt(self) -> str | None:
+        """Why it cannot draw adaptively, as `AdaptiveRenderer` has it."""
+        if self.intersections in ("auto", "analytic", "bvh"):
+            return None
+        return "what Embree or OptiX says of a hit is not enough to compare pixels by"
+
+    def render_adaptively(
+        self, scene: Scene, settings: Settings, choose: Choose, progress: Progress | None = None
+    ) -> Rendering:
+        """Draw adaptively, as `AdaptiveRenderer` has it."""
+        import numpy as np
+
+        started = time.perf_counter()
+        variant = self._start()
+        ready = time.perf_counter()
+        mitsuba_scene = self._load(scene, settings)
+        built = time.perf_counter()
+
+        width, height = settings.width, settings.height
+        pixels = np.zeros((height, width, 3), dtype=np.float32)
+        signatures = np.zeros((height, width), dtype=np.uint32)
+        integrator, sensor = mitsuba_scene.integrator(), mitsuba_scene.sensors()[0]
+        first, second = in_two_parts(progress, sensor.sampler().sample_count())
+        too_deep = 0
+        signed = chosen = built
+
+        def rendering() -> Rendering:
+            seconds = {"start": ready - started, "build": built - ready, "sign": signed - built}
+            seconds |= {"choose": chosen - signed, "render": time.perf_counter() - chosen}
+            statistics = {
+                "variant": variant,
+                "intersections": integrator.intersections,
+                "precision": integrator.precision,
+                "pixels_too_deep": max(too_deep, integrator.pixels_too_deep),
+            }
+            return Rendering(pixels, width, height, seconds, statistics)
+
+        try:
+            with _threads(settings.threads):
+                for row, color, words in integrator.signed_bands(mitsuba_scene, sensor, first):
+                    rows = np.moveaxis(np.asarray(color), 0, -1).reshape(-1, width, 3)
+                    pixels[row : row + len(rows)] = rows
+                    signatures[row : row + len(rows)] = np.asarray(words).reshape(-1, width)
+                too_deep = integrator.pixels_too_deep
+                signed = time.perf_counter()
+                numbers = np.flatnonzero(choose(signatures, pixels)).astype(np.uint32)
+                chosen = time.perf_counter()
+                for at, color in integrator.chosen_pixels(mitsuba_scene, sensor, numbers, second):
+                    colors = np.moveaxis(np.asarray(color), 0, -1)
+                    pixels.reshape(-1, 3)[numbers[at : at + len(colors)]] = colors
         except KeyboardInterrupt:
             raise Interrupted(rendering()) from None
         except RuntimeError as error:

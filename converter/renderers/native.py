@@ -9,7 +9,16 @@ from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from converter.analysis.coplanar import with_planes_shared
 from converter.pigments.table import pigment_kind
-from converter.renderers.base import Interrupted, Passes, Progress, RendererUnavailable, Rendering, refuse_effects
+from converter.renderers.base import (
+    Choose,
+    Interrupted,
+    Passes,
+    Progress,
+    RendererUnavailable,
+    Rendering,
+    in_two_parts,
+    refuse_effects,
+)
 from converter.scene.effects import Effect
 from converter.scene.geometry import simplified
 from converter.scene.model import Scene
@@ -22,6 +31,8 @@ if TYPE_CHECKING:
 
 Precision = Literal["float", "double", "long double"]
 Search = Literal["auto", "brute", "bvh"]
+_RAYS = ("primary", "reflected", "transmitted", "shadow")
+"""Names of the tracer's counters of rays."""
 EFFECTS: tuple[Effect, ...] = ("soft shadows", "glossy rays", "depth of field")
 """What of distributed ray tracing it draws."""
 
@@ -66,7 +77,7 @@ class NativeRenderer:
         def rendering() -> Rendering:
             seconds = {"build": built - started, "render": time.perf_counter() - built}
             statistics = image.statistics
-            rays = sum(statistics[kind] for kind in ("primary", "reflected", "transmitted", "shadow"))
+            rays = sum(statistics[kind] for kind in _RAYS)
             whole = None
             if sums is not None and sums.passes > 0:
                 whole = Passes(sums.passes, len(passes), sums.colors, sums.too_deep, {"counts": sums.counts})
@@ -76,6 +87,52 @@ class NativeRenderer:
         try:
             options = self._options(settings, needs) | ({"passes": passes, "sums": sums} if sums is not None else {})
             tracer.render(native_scene, image, threads=threads, progress=progress, **options)
+        except KeyboardInterrupt:
+            raise Interrupted(rendering()) from None
+        return rendering()
+
+    def unfit_to_adapt(self) -> str | None:
+        """Why it cannot draw adaptively, as `AdaptiveRenderer` has it."""
+        return None
+
+    def render_adaptively(
+        self, scene: Scene, settings: Settings, choose: Choose, progress: Progress | None = None
+    ) -> Rendering:
+        """Draw adaptively, as `AdaptiveRenderer` has it."""
+        import numpy as np
+
+        tracer = native_module()
+        started = time.perf_counter()
+        scene = simplified(scene)
+        needs = scene_needs(scene, settings)
+        native_scene = build_scene(scene, needs)
+        image = tracer.Image(settings.width, settings.height)
+        signatures = np.zeros((settings.height, settings.width), np.uint32)
+        options = self._options(settings, needs) | {"threads": settings.threads or available_cores()}
+        first, second = in_two_parts(progress, needs.samples)
+        built = time.perf_counter()
+        statistics: dict[str, Any] = {}
+        chosen = signed = built
+
+        def rendering() -> Rendering:
+            ended = time.perf_counter()
+            seconds = {"build": built - started, "sign": signed - built, "choose": chosen - signed}
+            seconds["render"] = ended - chosen
+            for name, value in image.statistics.items():
+                kept = statistics.get(name, value)
+                statistics[name] = kept + value if name in _RAYS and statistics else value
+                if name in ("deepest", "pixels_too_deep"):
+                    statistics[name] = max(kept, value)
+            rays = {"rays": sum(statistics[kind] for kind in _RAYS)}
+            return Rendering(image.pixels, image.width, image.height, seconds, rays | statistics)
+
+        try:
+            tracer.render(native_scene, image, signatures=signatures, progress=first, **options | {"samples": 1})
+            statistics |= image.statistics
+            signed = time.perf_counter()
+            mask = choose(signatures, np.asarray(image.pixels))
+            chosen = time.perf_counter()
+            tracer.render(native_scene, image, mask=mask.view(np.uint8), progress=second, **options)
         except KeyboardInterrupt:
             raise Interrupted(rendering()) from None
         return rendering()

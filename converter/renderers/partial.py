@@ -47,8 +47,10 @@ def write_partial(file: Path, passes: Passes, scene: Scene, settings: Settings, 
     }
     text = json.dumps(header).encode() + b"\n"
     with replacing(file) as temporary, temporary.open("xb") as out:
-        for part in (_MAGIC, text, *parts, _sum([text, *parts])):
+        out.write(_MAGIC + text)
+        for part in parts:
             out.write(part)
+        out.write(_sum([text, *parts]))
 
 
 def read_partial(file: Path, scene: Scene, settings: Settings, method: str) -> Passes:

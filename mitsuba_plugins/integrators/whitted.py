@@ -12,6 +12,7 @@ import numpy as np
 from mitsuba_plugins import sampler as samples
 from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.integrators.pace import Pace
+from mitsuba_plugins.integrators.signature import hit_word, shadow_word
 from mitsuba_plugins.integrators.stack import RayStack
 from mitsuba_plugins.integrators.tables import Finish, Illumination, Lights, Materials
 from mitsuba_plugins.intersection.analytic import AnalyticSurfaces
@@ -24,6 +25,7 @@ from mitsuba_plugins.intersection.mesh import MeshSurfaces
 from mitsuba_plugins.intersection.primitives import Primitives
 from mitsuba_plugins.intersection.rays import (
     NOTHING,
+    UPRIGHT,
     Hit,
     Ray,
     lanes,
@@ -165,6 +167,7 @@ class Whitted(mi.SamplingIntegrator):
         self.stack_size = max(1, props.get("waiting", props.get("max_depth", 16)))
         self.depth_limited = props.get("depth_limited", False)
         self.seed = props.get("seed", 0)
+        self.signing = False
         self.pixels_too_deep = 0
         self.sums: PassSums | None = None
         self._tracer: Any = None
@@ -178,14 +181,15 @@ class Whitted(mi.SamplingIntegrator):
     # ------------------------------------------------------------------ preparation
 
     @contextmanager
-    def prepared(self, scene, sensor=None):
+    def prepared(self, scene, sensor=None, signing=False):
         """Lay out what the kernel reads: surfaces, finishes, pigments, lights, and what the eye of a `pinhole` lies on;
-        the methods below need it.
+        the methods below need it. With `signing`, pixels get signatures.
 
         Let go of at the end: it may hold the scene, which holds this integrator, and such circles are never freed.
         """
         primitives = Primitives(self.types, self.surfaces)
         self.first_primitives = primitives.first
+        self._first_primitive = column(mi.UInt32, primitives.first)
         # These, too, are read anew each time: they are what mitsuba.traverse lets a user change.
         self._materials = Materials(self.types, [self._bsdfs.by_name[surface.material] for surface in self.surfaces])
         self._lights = Lights(self.types, scene.emitters())
@@ -193,7 +197,9 @@ class Whitted(mi.SamplingIntegrator):
         self._soft_shadows = self.shadows and bool(self._lights.radii.any())
         self._spreads = self._materials.spread and (self.reflection or self.refraction)
         self._has_lens = getattr(sensor, "has_lens", False)
-        self.sampled = self._soft_shadows or self._spreads or self._has_lens
+        self.signing = signing
+        # Then rays have paths.
+        self.sampled = self._soft_shadows or self._spreads or self._has_lens or signing
         contacts = Contacts(self.surfaces)
         self._light_contacts = LightContacts(self.types, contacts, self._lights.positions, self._lights.radii)
         on_something = hasattr(sensor, "eye") and not self._has_lens
@@ -300,8 +306,9 @@ class Whitted(mi.SamplingIntegrator):
 
     @dr.syntax
     def trace(self, ray: Ray, sample, active):
-        """Radiance (Color3) along rays: the whole tree below each, in one kernel; and, if `depth_limited`, whether
-        the limit dropped a ray that the cut-off would have kept, else False. Each is the primary ray of a `sample`.
+        """Radiance (Color3) along rays: the whole tree below each, in one kernel; if `depth_limited`, whether the limit
+        dropped a ray that the cut-off would have kept, else False; and if `signing`, the signature (UInt32), else 0.
+        Each is the primary ray of a `sample`.
 
         Where a surface sends on two rays, the heavier one waits on a stack in local memory.
         """
@@ -312,13 +319,16 @@ class Whitted(mi.SamplingIntegrator):
         depth = dr.zeros(mi.UInt32, width)
         active = active & lanes(width)
         too_deep = dr.zeros(mi.Bool, width) if self.depth_limited else False
+        signature = dr.zeros(mi.UInt32, width) if self.signing else mi.UInt32(0)
         waiting = dr.zeros(mi.UInt32, width)
         stack = RayStack(self.types, self.stack_size if self.branching else 0, self.sampled)
         path = dr.full(mi.UInt32, samples.PRIMARY_PATH, width) if self.sampled else mi.UInt32(0)
         while active:
             hit = self.closest(ray, active)
             finish, color = self.material(ray, hit)
-            local = self.local_radiance(ray, hit, finish, color, sample, path)
+            local, shadows = self.local_radiance(ray, hit, finish, color, sample, path)
+            if dr.hint(self.signing, mode="scalar"):
+                signature += dr.select(hit.valid, self._hit_word(ray, hit, path) + shadows, 0)
             radiance += weight * dr.select(hit.valid, local, self.types.Color3(self.background))
 
             depth += 1
@@ -369,7 +379,7 @@ class Whitted(mi.SamplingIntegrator):
                 ray = self.transmitted(ray, hit, finish, sample, path)[0]
                 if dr.hint(self.sampled, mode="scalar"):
                     path = 2 * path + 1
-        return radiance, too_deep
+        return radiance, too_deep, signature
 
     def followed(self, weight, depth, hit: Hit, finish: Finish):
         """Weight of the mirrored ray of a hit, and where it is followed; the same of the refracted one.
@@ -389,16 +399,21 @@ class Whitted(mi.SamplingIntegrator):
 
     @dr.syntax
     def local_radiance(self, ray: Ray, hit: Hit, finish: Finish, color, sample, path):
-        """What a surface sends back along a ray by itself (Color3): ambient light, and what the lights add."""
+        """What a surface sends back along a ray by itself (Color3): ambient light, and what the lights add; and, if
+        `signing`, a word (UInt32) for the shadows that it lies in, else 0.
+        """
         radiance = finish.ka * self.types.Color3(self.ambient) * color
+        shadows = dr.zeros(mi.UInt32, dr.width(ray.d)) if self.signing else mi.UInt32(0)
         if dr.hint(self.shadows, mode="scalar"):
             lit = hit.valid & (finish.kd + finish.ks > 0)
             light = dr.zeros(mi.UInt32, dr.width(ray.d))
             while lit & (light < self.light_count):
                 illumination = self.light(light, ray, hit, finish, color, lit, sample, path)
                 radiance += illumination.diffuse + illumination.specular
+                if dr.hint(self.signing, mode="scalar"):
+                    shadows += dr.select(illumination.blocker != NOTHING, shadow_word(path, light), 0)
                 light += 1
-        return radiance
+        return radiance, shadows
 
     # ------------------------------------------------------------------ pictures
 
@@ -408,7 +423,7 @@ class Whitted(mi.SamplingIntegrator):
             # Which sample of which pixel a ray is, nobody tells here.
             key = mi.UInt32(mi.Float64(sampler.next_1d()) * 2.0**32) if self.sampled else mi.UInt32(0)
             sample = samples.Sample(key, mi.UInt32(0))
-            color, _ = self.trace(start_ray(self.types, ray.o, unit(mi.Vector3d(ray.d))), sample, active)
+            color, _, _ = self.trace(start_ray(self.types, ray.o, unit(mi.Vector3d(ray.d))), sample, active)
         return mi.Color3f(color), mi.Bool(active), []
 
     def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
@@ -476,6 +491,82 @@ class Whitted(mi.SamplingIntegrator):
                 self.sums = PassSums(self.sums.passes + more, colors, too_deep)
                 self.pixels_too_deep = dr.count(too_deep)[0]
 
+    # ------------------------------------------------------------------ some pixels more often than others
+
+    def signed_bands(self, scene, sensor, progress=None):
+        """Draw a picture of one sample a pixel in bands of rows, with signatures, see :mod:`.signature`.
+
+        Yields:
+            The first row of a band within the film's crop window, and its pixels' colours (Color3f) and signatures
+            (UInt32).
+
+        """
+        width, height = sensor.film().crop_size()
+        with self.prepared(scene, sensor, signing=True), dr.suspend_grad():
+            pace = Pace(self.branching, self.max_depth[0])
+            self.pixels_too_deep = 0
+            offset = dr.opaque(mi.Point2d, mi.Point2d(*self.sample_offsets(1)[0]))
+            first = 0
+            while first < height:
+                rows = min(height - first, pace.rows(width))
+                with pace.launch(rows * width):
+                    corner = _corners(sensor.film(), _rows(sensor.film(), first, rows * width))
+                    number = samples.Sample(mi.UInt32(0), mi.UInt32(0))
+                    color, too_deep, signature = self.trace(
+                        self.primary_ray(sensor, corner + offset, number), number, True
+                    )
+                    pace.recorded()
+                    dr.eval(color, too_deep, signature)
+                    dr.sync_thread()
+                if self.depth_limited:
+                    self.pixels_too_deep += dr.count(too_deep)[0]
+                yield first, mi.Color3f(color), signature
+                first += rows
+                if progress is not None:
+                    progress(first / height)
+
+    def chosen_pixels(self, scene, sensor, numbers, progress=None):
+        """Draw some pixels of a picture, with all their samples. Their `numbers` (NumPy, uint32) count row by row within
+        the film's crop window.
+
+        Yields:
+            The index of a pixel among them, and the colours (Color3f) from it on, as many as are drawn at once.
+
+        """
+        cells = [cell for cells in passes(sensor.sampler().sample_count()) for cell in cells]
+        with self.prepared(scene, sensor), dr.suspend_grad():
+            pace = Pace(self.branching, self.max_depth[0])
+            tables = self._tables(cells)
+            self.pixels_too_deep = 0
+            first = 0
+            while first < len(numbers):
+                pixel = mi.UInt32(numbers[first : first + pace.rows(1)])
+                count = dr.width(pixel)
+                color = dr.opaque(mi.Color3d, 0, count)
+                too_deep = dr.opaque(mi.Bool, False, count) if self.depth_limited else False
+                done = 0
+                while done < len(cells):
+                    more = min(len(cells) - done, pace.samples(count))
+                    with pace.launch(count * more):
+                        color, too_deep = self._add_samples(sensor, color, too_deep, pixel, tables, done, done + more)
+                        pace.recorded()
+                        dr.eval(color, too_deep)
+                        dr.sync_thread()
+                    done += more
+                    if progress is not None:
+                        progress((first + count * done / len(cells)) / len(numbers))
+                if self.depth_limited:
+                    self.pixels_too_deep += dr.count(too_deep)[0]
+                yield first, mi.Color3f(quotient(color, len(cells)))
+                first += count
+
+    def _hit_word(self, ray: Ray, hit: Hit, path):
+        """What the hit of a ray of that path adds to a signature."""
+        first = dr.gather(mi.UInt32, self._first_primitive, hit.object, hit.valid)
+        cell = self._materials.cell(hit.object, hit.p, self._errors(ray, hit), hit.valid)
+        inside = dr.select(hit.inside, mi.UInt32(1), 0)
+        return hit_word(path, hit.object, (hit.primitive & UPRIGHT) - first, inside, cell)
+
     def _tables(self, cells):
         """Where the samples of a pixel lie, in the order in which they are drawn, and their numbers."""
         offsets = self.sample_offsets(len(cells))
@@ -500,7 +591,7 @@ class Whitted(mi.SamplingIntegrator):
                 color = dr.opaque(mi.Color3d, 0, rows * width)
                 too_deep = dr.opaque(mi.Bool, False, rows * width) if self.depth_limited else False
             else:
-                pixel = dr.arange(mi.UInt32, rows * width) + dr.opaque(mi.UInt32, first * width)
+                pixel = _rows(sensor.film(), first, rows * width)
                 color = dr.gather(mi.Color3d, sums.colors, pixel)
                 too_deep = dr.gather(mi.Bool, sums.too_deep, pixel) if self.depth_limited else False
                 dr.eval(color, too_deep)
@@ -508,7 +599,8 @@ class Whitted(mi.SamplingIntegrator):
             while done < end:
                 more = min(end - done, pace.samples(rows * width))
                 with pace.launch(rows * width * more):
-                    color, too_deep = self._add_samples(sensor, color, too_deep, first, tables, done, done + more)
+                    pixel = _rows(sensor.film(), first, rows * width)
+                    color, too_deep = self._add_samples(sensor, color, too_deep, pixel, tables, done, done + more)
                     pace.recorded()
                     dr.eval(color, too_deep)
                     dr.sync_thread()
@@ -519,17 +611,17 @@ class Whitted(mi.SamplingIntegrator):
             first += rows
 
     @dr.syntax
-    def _add_samples(self, sensor, color, too_deep, first, tables, sample, end):
-        """What `trace` finds for the pixels of whole rows from row `first` on, with some more samples added."""
+    def _add_samples(self, sensor, color, too_deep, pixel, tables, sample, end):
+        """What `trace` finds for pixels, by their numbers (UInt32), with some more samples added."""
         width = dr.width(color)
-        corner = _corners(sensor.film(), first, width)
+        corner = _corners(sensor.film(), pixel)
         key = self.pixel_key(corner)
         offsets, numbers = tables
         if dr.hint(dr.width(offsets) == 2, mode="scalar"):
             # One sample needs no loop, which takes twice as long to record.
             position = corner + dr.gather(mi.Point2d, offsets, mi.UInt32(0))
             number = samples.Sample(key, mi.UInt32(0))
-            more, deep = self.trace(self.primary_ray(sensor, position, number), number, True)
+            more, deep, _ = self.trace(self.primary_ray(sensor, position, number), number, True)
             color += more
             too_deep |= deep
         else:
@@ -538,7 +630,7 @@ class Whitted(mi.SamplingIntegrator):
             while sample < end:
                 position = corner + dr.gather(mi.Point2d, offsets, sample)
                 number = samples.Sample(key, dr.gather(mi.UInt32, numbers, sample) if self.sampled else mi.UInt32(0))
-                more, deep = self.trace(self.primary_ray(sensor, position, number), number, True)
+                more, deep, _ = self.trace(self.primary_ray(sensor, position, number), number, True)
                 color += more
                 too_deep |= deep
                 sample += 1
@@ -649,13 +741,16 @@ def _materials(props, surfaces):
     return bsdfs
 
 
-def _corners(film, first, count):
-    """Top left corners (Point2d) of `count` pixels from row `first` of the film's crop window on."""
-    # Opaque, so that pictures of all sizes share one kernel.
-    first, columns = dr.opaque(mi.UInt32, first), dr.opaque(mi.UInt32, film.crop_size().x)
-    pixel = dr.arange(mi.UInt32, count)
+def _rows(film, first, count):
+    """The numbers (UInt32) of `count` pixels from row `first` of the film's crop window on."""
+    return dr.arange(mi.UInt32, count) + dr.opaque(mi.UInt32, first * film.crop_size().x)
+
+
+def _corners(film, pixel):
+    """Top left corners (Point2d) of pixels, by their numbers in the film's crop window, row by row."""
+    columns = dr.opaque(mi.UInt32, film.crop_size().x)  # opaque, so that pictures of all sizes share one kernel
     row = pixel // columns
-    return mi.Point2d(pixel - row * columns, row + first) + mi.Point2d(film.crop_offset())
+    return mi.Point2d(pixel - row * columns, row) + mi.Point2d(film.crop_offset())
 
 
 def _block(bands, film):

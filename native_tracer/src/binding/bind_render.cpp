@@ -62,6 +62,9 @@ RenderSettings settings_of(int width, int height, int samples, std::uint32_t see
     return settings;
 }
 
+using Mask = nb::ndarray<const std::uint8_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using Signatures = nb::ndarray<std::uint32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
 void check_passes(const std::vector<Places>& passes, int samples) {
     std::vector<bool> found(static_cast<std::size_t>(samples));
     std::size_t count = 0;
@@ -96,7 +99,7 @@ nb::dict dict_of(const RayCounts& counts) {
 void render_image(const SceneDescription& scene, Image& image, int samples, std::uint32_t seed, bool corner, bool blinn,
                   double cutoff, int max_depth, const std::string& precision, const std::string& search, int threads,
                   nb::object progress, const std::string& instructions, const std::vector<Places>& passes,
-                  PassSums* sums) {
+                  PassSums* sums, std::optional<Mask> mask, std::optional<Signatures> signatures) {
     const RenderSettings settings =
         settings_of(image.width(), image.height(), samples, seed, corner, blinn, cutoff, max_depth, precision, search);
     if (!progress.is_none() && !PyCallable_Check(progress.ptr())) {
@@ -104,6 +107,13 @@ void render_image(const SceneDescription& scene, Image& image, int samples, std:
     }
     if (sums != nullptr) {
         check_passes(passes, samples);
+    }
+    const auto fits = [&](const auto& words) {
+        return words.shape(0) == static_cast<std::size_t>(image.height()) &&
+               words.shape(1) == static_cast<std::size_t>(image.width());
+    };
+    if ((mask && !fits(*mask)) || (signatures && !fits(*signatures))) {
+        throw std::invalid_argument("a mask and signatures have the image's height and width");
     }
     const auto watch = [&](double done) {
         const nb::gil_scoped_acquire lock;
@@ -116,10 +126,14 @@ void render_image(const SceneDescription& scene, Image& image, int samples, std:
     };
     const nb::gil_scoped_release unlocked;
     const std::unique_ptr<Kernel> kernel = make_kernel(scene, settings, instructions);
-    if (sums == nullptr) {
-        render(*kernel, image, threads, watch);
-    } else {
+    if (sums != nullptr) {
         render(*kernel, image, *sums, passes, threads, watch);
+    } else if (mask) {
+        render_masked(*kernel, image, mask->data(), threads, watch);
+    } else if (signatures) {
+        render_signed(*kernel, image, signatures->data(), threads, watch);
+    } else {
+        render(*kernel, image, threads, watch);
     }
 }
 
@@ -337,10 +351,13 @@ void bind_render(nb::module_& module) {
         "render", &render_image, "scene"_a, "image"_a, nb::kw_only(), "samples"_a = 1, "seed"_a = 0, "corner"_a = true,
         "blinn"_a = false, "cutoff"_a, "max_depth"_a, "precision"_a = "double", "search"_a = "auto", "threads"_a = 0,
         "progress"_a = nb::none(), "instructions"_a = "", "passes"_a = nb::list(), "sums"_a = nb::none(),
+        "mask"_a = nb::none(), "signatures"_a = nb::none(),
         "Draw `scene` into `image`. `progress` is called about 20 times a second with the finished share; what\n"
         "it raises, and Ctrl-C, stop the rendering, and what is finished stays in the image.\n"
         "With `sums`, of the image's size, it is drawn in `passes`, which name each sample once; passes that are\n"
-        "in the sums are not drawn again, and those that become whole are added.");
+        "in the sums are not drawn again, and those that become whole are added. With a `mask` of bytes, height x\n"
+        "width, only the pixels are drawn that are not 0 there. `signatures`, of uint32, get a word each for what is\n"
+        "decided along the pixel's rays.");
     module.def("trace_pixel", &trace_pixel, "scene"_a, "width"_a, "height"_a, "x"_a, "y"_a, nb::kw_only(),
                "samples"_a = 1, "seed"_a = 0, "corner"_a = true, "blinn"_a = false, "cutoff"_a, "max_depth"_a,
                "precision"_a = "double", "search"_a = "auto", "The rays of one pixel as nested dictionaries.");

@@ -3,6 +3,7 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <string_view>
 #include <vector>
@@ -40,6 +41,14 @@ class Kernel {
     // untouched, if it was stopped. May be called from several threads at once.
     virtual bool trace_tile(const Tile& tile, float* picture, RayCounts& counts,
                             const std::atomic<bool>& stop) const = 0;
+
+    // The same for those pixels only where `mask`, height x width of the picture, is not 0.
+    virtual bool trace_masked(const Tile& tile, const unsigned char* mask, float* picture, RayCounts& counts,
+                              const std::atomic<bool>& stop) const = 0;
+
+    // The same as trace_tile, and the pixels' signatures, height x width of the picture; see signer.h.
+    virtual bool sign_tile(const Tile& tile, float* picture, std::uint32_t* signatures, RayCounts& counts,
+                           const std::atomic<bool>& stop) const = 0;
 
     // The same with some of the samples only: their sums are added to those before, and the picture has the mean of all
     // so far.

@@ -3,10 +3,13 @@
 #pragma once
 
 #include <cmath>
+#include <cstddef>
+#include <cstdint>
 #include <variant>
 
 #include "tracing/camera.h"
 #include "tracing/rounding.h"
+#include "tracing/sampler.h"
 #include "tracing/vector.h"
 
 namespace whitted::WHITTED_ISA {
@@ -57,6 +60,14 @@ struct Checker {
 
     Color<Lanes<Real>> at(const Meeting<Real>& met) const {
         using L = Lanes<Real>;
+        const Vector<L> cell = cell_at(met);
+        const Mask<Real> odd_sum = odd(cell.x) ^ odd(cell.y) ^ odd(cell.z);
+        return select(odd_sum, Color<L>(second), Color<L>(first));
+    }
+
+    // The number of the cube, in each direction.
+    Vector<Lanes<Real>> cell_at(const Meeting<Real>& met) const {
+        using L = Lanes<Real>;
         const Vector<L>& p = met.point;
         const L rounding = 2 * tie_epsilon<Real>;
         Vector<L> cell{cell_of(p.x, rounding * abs(p.x)), cell_of(p.y, rounding * abs(p.y)),
@@ -72,8 +83,7 @@ struct Checker {
             const Vector<L> errors = met.errors();
             cell = select(close, {cell_of(p.x, errors.x), cell_of(p.y, errors.y), cell_of(p.z, errors.z)}, cell);
         }
-        const Mask<Real> odd_sum = odd(cell.x) ^ odd(cell.y) ^ odd(cell.z);
-        return select(odd_sum, Color<L>(second), Color<L>(first));
+        return cell;
     }
 
  private:
@@ -101,6 +111,12 @@ struct Texmap {
     Real p0_offset, p1_offset;
 
     Color<Lanes<Real>> at(const Meeting<Real>& met) const {
+        const PlanePoint<Real> texel = texel_at(met);
+        return gather<Real>([&](int lane) { return color(index(texel, lane)); });
+    }
+
+    // The texel's position, in texels of the image repeated.
+    PlanePoint<Real> texel_at(const Meeting<Real>& met) const {
         using L = Lanes<Real>;
         L column = position(met.point, p0, p0_offset, width);
         L row = position(met.point, p1, p1_offset, height);
@@ -111,7 +127,13 @@ struct Texmap {
             column = away_from_0(column, error_of(met.point, errors, p0, p0_offset, width));
             row = away_from_0(row, error_of(met.point, errors, p1, p1_offset, height));
         }
-        return gather<Real>([&](int lane) { return texel(wrap(column[lane], width), wrap(row[lane], height)); });
+        return {column, row};
+    }
+
+    // Where the texel of a lane is in the image.
+    std::size_t index(const PlanePoint<Real>& texel, int lane) const {
+        const int column = wrap(texel.x[lane], width), row = wrap(texel.y[lane], height);
+        return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
     }
 
  private:
@@ -144,9 +166,8 @@ struct Texmap {
         return position + select(position < Lanes<Real>(Real(0)), -error, error);
     }
 
-    Color<Real> texel(int column, int row) const {
-        const float* texel = texels + 3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
-                                           static_cast<std::size_t>(column));
+    Color<Real> color(std::size_t index) const {
+        const float* texel = texels + 3 * index;
         return {static_cast<Real>(texel[0]), static_cast<Real>(texel[1]), static_cast<Real>(texel[2])};
     }
 
@@ -176,6 +197,24 @@ template <typename Real>
         return checker->at(met);
     }
     return std::get_if<Texmap<Real>>(&pigment)->at(met);
+}
+
+// A word for the piece of the pigment in a lane, such as a checker's cube or an image's texel.
+template <typename Real>
+std::uint32_t cell_word(const Pigment<Real>& pigment, const Meeting<Real>& met, int lane) {
+    if (const auto* checker = std::get_if<Checker<Real>>(&pigment)) {
+        const Vector<Lanes<Real>> cell = checker->cell_at(met);
+        const auto word = [&](Real number) {
+            constexpr Real period = 1 << 22;  // a float holds them all
+            const Real rest = number - std::floor(number / period) * period;
+            return rest > 0 ? static_cast<std::uint32_t>(rest) : 0U;
+        };
+        return combine(combine(word(cell.x[lane]), word(cell.y[lane])), word(cell.z[lane]));
+    }
+    if (const auto* texmap = std::get_if<Texmap<Real>>(&pigment)) {
+        return static_cast<std::uint32_t>(texmap->index(texmap->texel_at(met), lane));
+    }
+    return 0;
 }
 
 // The pigment is made of what the file says about it; a texmap keeps the description's texels.

@@ -5,12 +5,14 @@
 #include <array>
 #include <atomic>
 #include <cstddef>
+#include <cstdint>
 
 #include "tracing/camera.h"
 #include "tracing/kernel.h"
 #include "tracing/observer.h"
 #include "tracing/primary_rays.h"
 #include "tracing/scene.h"
+#include "tracing/signer.h"
 #include "tracing/trace.h"
 #include "tracing/vector.h"
 
@@ -32,14 +34,37 @@ class RealKernel final : public Kernel {
         : scene_(scene, plan), camera_(scene.camera, settings.width, settings.height), settings_(settings) {}
 
     bool trace_tile(const Tile& tile, float* picture, RayCounts& counts, const std::atomic<bool>& stop) const override {
-        const int grid2 = settings_.grid * settings_.grid;
-        return trace_pixels(tile, nullptr, counts, stop,
-                            [&](const Pixel& pixel) { store_mean(pixel.sum, grid2, picture + 3 * pixel.index); });
+        Unobserved unobserved;
+        return trace_pixels(unobserved, tile, all_rays(tile), counts, stop,
+                            [&](const Pixel& pixel) { show(pixel, picture); });
+    }
+
+    bool trace_masked(const Tile& tile, const unsigned char* mask, float* picture, RayCounts& counts,
+                      const std::atomic<bool>& stop) const override {
+        Unobserved unobserved;
+        const PrimaryRays<Real> rays(camera_, scene_.eye_contact, settings_, tile, nullptr, mask);
+        return trace_pixels(unobserved, tile, rays, counts, stop, [&](const Pixel& pixel) {
+            if (mask[pixel.index] != 0) {
+                show(pixel, picture);
+            }
+        });
+    }
+
+    bool sign_tile(const Tile& tile, float* picture, std::uint32_t* signatures, RayCounts& counts,
+                   const std::atomic<bool>& stop) const override {
+        std::array<std::uint32_t, tile_width * tile_height> words{};
+        Signer<Real> signer(words.data());
+        return trace_pixels(signer, tile, all_rays(tile), counts, stop, [&](const Pixel& pixel) {
+            show(pixel, picture);
+            signatures[pixel.index] = words[pixel.in_tile];
+        });
     }
 
     bool add_samples(const Tile& tile, const Places& places, const SampleSums& sums, float* picture, RayCounts& counts,
                      const std::atomic<bool>& stop) const override {
-        return trace_pixels(tile, &places, counts, stop, [&](const Pixel& pixel) {
+        Unobserved unobserved;
+        const PrimaryRays<Real> rays(camera_, scene_.eye_contact, settings_, tile, &places);
+        return trace_pixels(unobserved, tile, rays, counts, stop, [&](const Pixel& pixel) {
             const double* before = sums.before + 3 * pixel.index;
             double* after = sums.after + 3 * pixel.index;
             after[0] = before[0] + static_cast<double>(pixel.sum.x);
@@ -59,20 +84,24 @@ class RealKernel final : public Kernel {
 
     // What is known of a pixel when its samples are traced.
     struct Pixel {
-        std::size_t index;  // in the picture
+        std::size_t index, in_tile;  // in the picture, and in the tile
         const Color<Sum>& sum;
         bool too_deep;
     };
 
-    // Calls store(pixel) for each pixel of the tile, once all are traced.
-    template <typename Store>
-    bool trace_pixels(const Tile& tile, const Places* places, RayCounts& counts, const std::atomic<bool>& stop,
-                      Store store) const {
-        Unobserved unobserved;
-        Tracer<Real, Unobserved> tracer(scene_, settings_, unobserved);
+    PrimaryRays<Real> all_rays(const Tile& tile) const { return {camera_, scene_.eye_contact, settings_, tile}; }
+
+    void show(const Pixel& pixel, float* picture) const {
+        store_mean(pixel.sum, settings_.grid * settings_.grid, picture + 3 * pixel.index);
+    }
+
+    // Calls store(pixel) for each pixel of the tile, once the rays are traced.
+    template <typename Observer, typename Store>
+    bool trace_pixels(Observer& observer, const Tile& tile, const PrimaryRays<Real>& rays, RayCounts& counts,
+                      const std::atomic<bool>& stop, Store store) const {
+        Tracer<Real, Observer> tracer(scene_, settings_, observer);
         std::array<Color<Sum>, tile_width * tile_height> sums;
         sums.fill({0, 0, 0});
-        const PrimaryRays<Real> rays(camera_, scene_.eye_contact, settings_, tile, places);
         if (!tracer.trace(rays, sums.data(), counts, stop)) {
             return false;
         }
@@ -81,7 +110,7 @@ class RealKernel final : public Kernel {
             for (int column = tile.left; column < tile.right; ++column, ++pixel) {
                 const std::size_t index = static_cast<std::size_t>(row) * static_cast<std::size_t>(settings_.width) +
                                           static_cast<std::size_t>(column);
-                store(Pixel{index, sums[pixel], tracer.too_deep(pixel)});
+                store(Pixel{index, pixel, sums[pixel], tracer.too_deep(pixel)});
             }
         }
         return true;

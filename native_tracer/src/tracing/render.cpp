@@ -170,15 +170,33 @@ class Drawing {
     std::exception_ptr failure_;
 };
 
-}  // namespace
-
-void render(const Kernel& kernel, Image& image, int threads, const std::function<void(double)>& watch) {
-    const auto draw_tile = [&](const Tile& tile, RayCounts& counts, const std::atomic<bool>& stop) {
-        return kernel.trace_tile(tile, image.data(), counts, stop);
-    };
+void draw(const Kernel& kernel, Image& image, int threads, const std::function<void(double)>& watch,
+          const Drawing::DrawTile& draw_tile) {
     image.by_tree = kernel.uses_tree();
     Drawing(image, draw_tile).run(threads, watch);
     watch(1);
+}
+
+}  // namespace
+
+void render(const Kernel& kernel, Image& image, int threads, const std::function<void(double)>& watch) {
+    draw(kernel, image, threads, watch, [&](const Tile& tile, RayCounts& counts, const std::atomic<bool>& stop) {
+        return kernel.trace_tile(tile, image.data(), counts, stop);
+    });
+}
+
+void render_masked(const Kernel& kernel, Image& image, const unsigned char* mask, int threads,
+                   const std::function<void(double)>& watch) {
+    draw(kernel, image, threads, watch, [&](const Tile& tile, RayCounts& counts, const std::atomic<bool>& stop) {
+        return kernel.trace_masked(tile, mask, image.data(), counts, stop);
+    });
+}
+
+void render_signed(const Kernel& kernel, Image& image, std::uint32_t* signatures, int threads,
+                   const std::function<void(double)>& watch) {
+    draw(kernel, image, threads, watch, [&](const Tile& tile, RayCounts& counts, const std::atomic<bool>& stop) {
+        return kernel.sign_tile(tile, image.data(), signatures, counts, stop);
+    });
 }
 
 void render(const Kernel& kernel, Image& image, PassSums& sums, const std::vector<Places>& passes, int threads,

@@ -2,6 +2,7 @@
 
 #pragma once
 
+#include <cstdint>
 #include <cstdlib>
 #include <functional>
 #include <memory>
@@ -69,6 +70,14 @@ class PassSums {
 // times a second with the share that is done; what it throws stops the rendering at once and is thrown on, and the
 // tiles that are finished stay in the image. The bytes do not depend on the number of threads.
 void render(const Kernel& kernel, Image& image, int threads, const std::function<void(double)>& watch);
+
+// The same for those pixels only where `mask`, height x width, is not 0; the others stay what they are.
+void render_masked(const Kernel& kernel, Image& image, const unsigned char* mask, int threads,
+                   const std::function<void(double)>& watch);
+
+// The same as the first, and the pixels' signatures, height x width, see signer.h.
+void render_signed(const Kernel& kernel, Image& image, std::uint32_t* signatures, int threads,
+                   const std::function<void(double)>& watch);
 
 // The same, pass after pass over the whole picture, each with some places of every pixel. Those that are in `sums` are
 // not drawn again. The picture has the mean of what is drawn of it at every moment; if drawing is stopped, the sums

@@ -192,7 +192,9 @@ Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const H
         const L along = min(off / abs(dot(surface.outward, rays.direction)), blur);
         surface.error = rounding_error(reach, hits.t) + along;
         surface.lean = moved.curvature * surface.error;
-        surface.pigment = color_at(*object.pigment, {surface.point, surface.outward, rays.direction, off, blur});
+        const Meeting<Real> met{surface.point, surface.outward, rays.direction, off, blur};
+        surface.pigment = color_at(*object.pigment, met);
+        observer_.pigment(*object.pigment, met, first ? hit : same);
         const Finish<Real>& finish = object.finish;
         surface.ka = finish.ka;
         surface.kd = finish.kd;
