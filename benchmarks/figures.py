@@ -197,7 +197,7 @@ def samples() -> None:
 
 
 def adaptive() -> None:
-    """The gallery's scenes that are not sampled: how far pictures are from one of 256 samples a pixel, and their rays."""
+    """The gallery's scenes in which nothing is random: errors of adaptive and of uniform pictures, and rays."""
     limits, size = (2, 4, 8, 16), Settings(width=320, height=240)
     native = NativeRenderer()
     print(

@@ -505,16 +505,15 @@ class Whitted(mi.SamplingIntegrator):
         with self.prepared(scene, sensor, signing=True), dr.suspend_grad():
             pace = Pace(self.branching, self.max_depth[0])
             self.pixels_too_deep = 0
-            offset = dr.opaque(mi.Point2d, mi.Point2d(*self.sample_offsets(1)[0]))
+            offset = column(mi.Float64, self.sample_offsets(1))
             first = 0
             while first < height:
                 rows = min(height - first, pace.rows(width))
                 with pace.launch(rows * width):
                     corner = _corners(sensor.film(), _rows(sensor.film(), first, rows * width))
+                    position = corner + dr.gather(mi.Point2d, offset, mi.UInt32(0))
                     number = samples.Sample(mi.UInt32(0), mi.UInt32(0))
-                    color, too_deep, signature = self.trace(
-                        self.primary_ray(sensor, corner + offset, number), number, True
-                    )
+                    color, too_deep, signature = self.trace(self.primary_ray(sensor, position, number), number, True)
                     pace.recorded()
                     dr.eval(color, too_deep, signature)
                     dr.sync_thread()
@@ -526,8 +525,8 @@ class Whitted(mi.SamplingIntegrator):
                     progress(first / height)
 
     def chosen_pixels(self, scene, sensor, numbers, progress=None):
-        """Draw some pixels of a picture, with all their samples. Their `numbers` (NumPy, uint32) count row by row within
-        the film's crop window.
+        """Draw some pixels, with all their samples. Their `numbers` (NumPy, uint32) count row by row within the film's
+        crop window.
 
         Yields:
             The index of a pixel among them, and the colours (Color3f) from it on, as many as are drawn at once.

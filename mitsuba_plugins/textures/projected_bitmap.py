@@ -44,14 +44,10 @@ class ProjectedBitmap(mi.Texture):
 
         A position that is a whole number of texels, but for the errors of the coordinates, is that number.
         """
-        return mi.Color3d(dr.gather(mi.Color3f, self.texels, self.cell_at(p, errors)))
-
-    def cell_at(self, p, errors=0):
-        """The index (UInt32) of the texel at a position."""
         p, errors = mi.Vector3d(p), mi.Vector3d(errors)
         column = self._texel(self.to_s, p, errors, self.width)
         row = self._texel(self.to_r, p, errors, self.height)
-        return row * mi.UInt32(self.width) + column
+        return mi.Color3d(dr.gather(mi.Color3f, self.texels, row * mi.UInt32(self.width) + column))
 
     @classmethod
     def _texel(cls, projection, p, errors, count):

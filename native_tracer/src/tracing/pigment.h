@@ -3,7 +3,6 @@
 #pragma once
 
 #include <cmath>
-#include <cstddef>
 #include <cstdint>
 #include <variant>
 
@@ -111,12 +110,6 @@ struct Texmap {
     Real p0_offset, p1_offset;
 
     Color<Lanes<Real>> at(const Meeting<Real>& met) const {
-        const PlanePoint<Real> texel = texel_at(met);
-        return gather<Real>([&](int lane) { return color(index(texel, lane)); });
-    }
-
-    // The texel's position, in texels of the image repeated.
-    PlanePoint<Real> texel_at(const Meeting<Real>& met) const {
         using L = Lanes<Real>;
         L column = position(met.point, p0, p0_offset, width);
         L row = position(met.point, p1, p1_offset, height);
@@ -127,13 +120,7 @@ struct Texmap {
             column = away_from_0(column, error_of(met.point, errors, p0, p0_offset, width));
             row = away_from_0(row, error_of(met.point, errors, p1, p1_offset, height));
         }
-        return {column, row};
-    }
-
-    // Where the texel of a lane is in the image.
-    std::size_t index(const PlanePoint<Real>& texel, int lane) const {
-        const int column = wrap(texel.x[lane], width), row = wrap(texel.y[lane], height);
-        return static_cast<std::size_t>(row) * static_cast<std::size_t>(width) + static_cast<std::size_t>(column);
+        return gather<Real>([&](int lane) { return texel(wrap(column[lane], width), wrap(row[lane], height)); });
     }
 
  private:
@@ -166,8 +153,9 @@ struct Texmap {
         return position + select(position < Lanes<Real>(Real(0)), -error, error);
     }
 
-    Color<Real> color(std::size_t index) const {
-        const float* texel = texels + 3 * index;
+    Color<Real> texel(int column, int row) const {
+        const float* texel = texels + 3 * (static_cast<std::size_t>(row) * static_cast<std::size_t>(width) +
+                                           static_cast<std::size_t>(column));
         return {static_cast<Real>(texel[0]), static_cast<Real>(texel[1]), static_cast<Real>(texel[2])};
     }
 
@@ -199,7 +187,8 @@ template <typename Real>
     return std::get_if<Texmap<Real>>(&pigment)->at(met);
 }
 
-// A word for the piece of the pigment in a lane, such as a checker's cube or an image's texel.
+// A word for the piece of the pigment in a lane, a checker's cube. An image's texels are told apart by their colours
+// only, for most images are smooth.
 template <typename Real>
 std::uint32_t cell_word(const Pigment<Real>& pigment, const Meeting<Real>& met, int lane) {
     if (const auto* checker = std::get_if<Checker<Real>>(&pigment)) {
@@ -210,9 +199,6 @@ std::uint32_t cell_word(const Pigment<Real>& pigment, const Meeting<Real>& met, 
             return rest > 0 ? static_cast<std::uint32_t>(rest) : 0U;
         };
         return combine(combine(word(cell.x[lane]), word(cell.y[lane])), word(cell.z[lane]));
-    }
-    if (const auto* texmap = std::get_if<Texmap<Real>>(&pigment)) {
-        return static_cast<std::uint32_t>(texmap->index(texmap->texel_at(met), lane));
     }
     return 0;
 }
