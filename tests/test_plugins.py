@@ -318,6 +318,7 @@ HOST_DIVISIONS = {
     "intersection/analytic.py": {"_bound"},
     "intersection/columns.py": {"column"},
     "intersection/leaf_table.py": {"_sphere_around"},
+    "intersection/primitives.py": {"_pieces"},
     "intersection/rounding.py": {"camera_errors"},
     "intersection/shapes/polyhedron.py": {"contacts", "_normalised"},
     "intersection/shapes/quadric.py": {"_form", "_rows", "_anchor", "_contact"},

@@ -189,7 +189,7 @@ class Whitted(mi.SamplingIntegrator):
         """
         primitives = Primitives(self.types, self.surfaces)
         self.first_primitives = primitives.first
-        self._first_primitive = column(mi.UInt32, primitives.first)
+        self._pieces = column(mi.UInt32, primitives.pieces)
         # These, too, are read anew each time: they are what mitsuba.traverse lets a user change.
         self._materials = Materials(self.types, [self._bsdfs.by_name[surface.material] for surface in self.surfaces])
         self._lights = Lights(self.types, scene.emitters())
@@ -561,10 +561,10 @@ class Whitted(mi.SamplingIntegrator):
 
     def _hit_word(self, ray: Ray, hit: Hit, path):
         """What the hit of a ray of that path adds to a signature."""
-        first = dr.gather(mi.UInt32, self._first_primitive, hit.object, hit.valid)
+        piece = dr.gather(mi.UInt32, self._pieces, hit.primitive & UPRIGHT, hit.valid)
         cell = self._materials.cell(hit.object, hit.p, self._errors(ray, hit), hit.valid)
         inside = dr.select(hit.inside, mi.UInt32(1), 0)
-        return hit_word(path, hit.object, (hit.primitive & UPRIGHT) - first, inside, cell)
+        return hit_word(path, hit.object, piece, inside, cell)
 
     def _tables(self, cells):
         """Where the samples of a pixel lie, in the order in which they are drawn, and their numbers."""
