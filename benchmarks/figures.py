@@ -16,7 +16,6 @@ import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable, Sequence
-from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -46,6 +45,8 @@ FIGURE1 = ROOT / "scenes" / "figure1.in"
 PROGRAMS = Path(sys.executable).parent
 RUNS, FEW_RUNS = 11, 3
 RANDOM_SCENES = 200
+LIMITS = (4, 8, 32)
+"""Of adaptive sampling, in levels of 255."""
 
 
 def main() -> None:
@@ -198,27 +199,27 @@ def samples() -> None:
 
 def adaptive() -> None:
     """The gallery's scenes in which nothing is random: errors of adaptive and of uniform pictures, and rays."""
-    limits, size = (2, 4, 8, 16), Settings(width=320, height=240)
-    native = NativeRenderer()
-    print(
-        "320 x 240, native: RMS error in levels of 255 against 256 samples a pixel, of one sample and of 16, and of 16"
-    )
-    print("where --adaptive LIMIT wants them, with the rays a pixel from the eye")
-    print(f"{'':<18}{'1':>8}{'16':>8}" + "".join(f"{f'LIMIT {limit}':>10}{'rays':>7}" for limit in limits))
+    print("800 x 600, native: RMS error in levels of 255 against 256 samples a pixel: one sample, 16, and 16 where")
+    print("--adaptive LIMIT wants them, with the rays a pixel from the eye")
+    print(f"{'':<18}{'1':>8}{'16':>8}" + "".join(f"{f'LIMIT {limit}':>10}{'rays':>7}" for limit in LIMITS))
     rows = []
     for file in sorted((ROOT / "scenes").glob("*.in")):
         scene = load_scene(file)
-        if scene_needs(scene, size).sampled:
-            continue
-        truth, one, many = (native.render(scene, replace(size, samples=n)) for n in (256, 1, 16))
-        row = [_rms_levels(picture, truth) for picture in (one, many)]
-        for limit in limits:
-            chosen = Adapting(limit, 16)
-            picture = native.render_adaptively(scene, replace(size, samples=16), chosen)
-            row += [_rms_levels(picture, truth), chosen.statistics()["rays_a_pixel"]]
-        rows.append(row)
-        print(f"{file.name:<18}{_adaptive_told(row)}", flush=True)
+        if not scene_needs(scene, Settings()).sampled:
+            rows.append(_adaptive_errors(scene))
+            print(f"{file.name:<18}{_adaptive_told(rows[-1])}", flush=True)
     print(f"{'mean':<18}{_adaptive_told(np.mean(rows, axis=0))}")
+
+
+def _adaptive_errors(scene: Scene) -> list[float]:
+    native = NativeRenderer()
+    truth, one, many = (native.render(scene, Settings(samples=n)) for n in (256, 1, 16))
+    result = [_rms_levels(picture, truth) for picture in (one, many)]
+    for limit in LIMITS:
+        chosen = Adapting(limit, 16)
+        picture = native.render_adaptively(scene, Settings(samples=16), chosen)
+        result += [_rms_levels(picture, truth), chosen.statistics()["rays_a_pixel"]]
+    return result
 
 
 def _adaptive_told(row: Sequence[float]) -> str:

@@ -144,6 +144,8 @@ def render(
     instructions: Literal["", "baseline", "avx2", "avx512"] = "",
     passes: Sequence[Sequence[int]] = (),
     sums: PassSums | None = None,
+    mask: Buffer | None = None,
+    signatures: Buffer | None = None,
 ) -> None:
     """Draw `scene` into `image`.
 
@@ -151,8 +153,10 @@ def render(
     so many; the picture's bytes are the same, and the image's statistics say which it was.
     `progress` is called about 20 times a second with the finished share; what it raises, and Ctrl-C, stop the
     rendering, and what is finished stays in the image. `instructions` forces an instruction set, "" takes the best.
-    With `sums`, of the image's size, it is drawn in `passes`, which name each sample once, see `native_tracer.passes`:
-    those that are in the sums are not drawn again, and those that become whole are added.
+    With `sums`, of the image's size, it is drawn in `passes`, which name each sample once at most, see
+    `native_tracer.passes`: those that are in the sums are not drawn again, and those that become whole are added.
+    With a `mask` of bytes, height x width, only the pixels are drawn that are not 0 there. `signatures`, of height x
+    width uint32, get a word each for what is decided along the pixel's rays.
     """
 
 def trace_pixel(

@@ -15,8 +15,8 @@ ONE_PASS = 16
 _GOLDEN = (5**0.5 - 1) / 2
 
 
-def passes(samples: int) -> list[list[int]]:
-    """The cells of each pass, for a square number of samples.
+def passes(samples: int, in_one: int = ONE_PASS) -> list[list[int]]:
+    """The cells of each pass, for a square number of samples, of which `in_one` are drawn in one pass.
 
     Raises:
         ValueError: it is none.
@@ -25,7 +25,7 @@ def passes(samples: int) -> list[list[int]]:
     n = isqrt(max(samples, 0))
     if n < 1 or n * n != samples:
         raise ValueError(f"samples per pixel are laid out as a grid, and {samples} is no square number")
-    if samples <= ONE_PASS:
+    if samples <= in_one:
         return [list(range(samples))]
     step = min((i for i in range(1, n) if gcd(i, n) == 1), key=lambda i: abs(i - _GOLDEN * n))
     return [[(step * (column + number)) % n * n + column for column in range(n)] for number in range(n)]

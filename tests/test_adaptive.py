@@ -10,7 +10,7 @@ from variant import VARIANT
 
 from converter.commands import main
 from converter.commands.adapting import Adapting
-from converter.renderers.adaptive import unlike_neighbors
+from converter.renderers.adaptive import Spread, unlike_neighbors
 from converter.renderers.base import Interrupted
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
@@ -25,16 +25,19 @@ FLAT = Finish(ka=1, kd=0, ks=0, alpha=1, kr=0, kt=0, ior=1)
 MATTE = Finish(ka=0, kd=1, ks=0, alpha=1, kr=0, kt=0, ior=1)
 
 
+class Kept(Adapting):
+    """Keeps what it was asked and has said, too."""
+
+    def unlike(self, signatures, colors):
+        self.signatures, self.mask = signatures.copy(), super().unlike(signatures, colors)
+        return self.mask
+
+
 def drawn(renderer, scene, limit=8, settings=SETTINGS):
     """The picture, which pixels were refined, and the signatures."""
-    kept = []
-
-    def choose(signatures, colors):
-        kept.extend((unlike_neighbors(signatures, colors, limit), signatures.copy()))
-        return kept[0]
-
-    picture = np.asarray(renderer.render_adaptively(scene, settings, choose).pixels)
-    return picture, *kept
+    kept = Kept(limit, settings.samples)
+    picture = np.asarray(renderer.render_adaptively(scene, settings, kept).pixels)
+    return picture, kept.mask, kept.signatures
 
 
 # ---- Which pixels
@@ -178,8 +181,71 @@ def test_ctrl_c(renderer, small_scene):
 def test_rays_are_counted(small_scene):
     chosen = Adapting(8, 16)
     found = NativeRenderer().render_adaptively(small_scene, SETTINGS, chosen).statistics
-    assert found["primary"] == 64 * 48 * chosen.statistics()["rays_a_pixel"]
+    assert found["primary"] == pytest.approx(64 * 48 * chosen.statistics()["rays_a_pixel"], rel=1e-3)
     assert found["rays"] == sum(found[kind] for kind in ("primary", "reflected", "transmitted", "shadow"))
+
+
+# ---- Scenes that are sampled
+
+
+def sampled(scene):
+    """The scene with a wide light."""
+    return replace(scene, lights=(replace(scene.lights[0], radius=1.0), *scene.lights[1:]))
+
+
+class Limitless(Adapting):
+    """Is never sure."""
+
+    def unsure(self, sums, size, drawn):
+        super().unsure(sums, size, drawn)
+        return drawn
+
+
+def test_both_renderers_are_sure_of_the_same_pixels(mi, small_scene):
+    pictures, counts = [], []
+    for renderer in (NativeRenderer(), MitsubaRenderer(VARIANT)):
+        chosen = Adapting(4, 64)
+        settings = replace(SETTINGS, samples=64)
+        pictures.append(np.asarray(renderer.render_adaptively(sampled(small_scene), settings, chosen).pixels))
+        counts.append(chosen._samples.copy())
+    assert np.array_equal(*counts)
+    assert pictures[0] == pytest.approx(pictures[1], abs=1e-6)
+    assert set(np.unique(counts[0])) <= set(range(16, 65, 8))
+    assert {16, 64} <= set(np.unique(counts[0]))
+
+
+def test_all_samples_are_the_uniform_picture(renderer, small_scene):
+    scene = sampled(small_scene)
+    whole = np.asarray(renderer.render(scene, SETTINGS).pixels)
+    found = renderer.render_adaptively(scene, SETTINGS, Limitless(8, 16))
+    assert np.asarray(found.pixels) == pytest.approx(whole, abs=1e-7)
+
+
+def test_the_error_is_below_the_limit(small_scene):
+    """Where it was sure, before all samples were drawn, and against many."""
+    scene, settings = sampled(small_scene), replace(SETTINGS, samples=256)
+    truth = np.asarray(NativeRenderer().render(scene, replace(settings, samples=1024, seed=5)).pixels)
+    chosen = Adapting(2, 256)
+    found = np.asarray(NativeRenderer().render_adaptively(scene, settings, chosen).pixels)
+    sure = chosen._samples < 256
+    assert 0.3 < sure.mean() < 1
+    error = 255 * (found - truth).astype(float)[sure]
+    assert np.sqrt(np.mean(error**2)) < 2
+    assert np.mean(np.abs(error) > 4) < 0.01
+
+
+def test_a_spread_in_numbers():
+    spread = Spread(limit=255 * 0.5)
+    sums, everywhere = np.zeros((1, 3, 3)), np.ones((1, 3), bool)
+    sums[0, 0] = 4, 4, 4
+    assert spread.unsure(sums, 4, everywhere).all()  # of one pass nothing is known
+    sums[0, 0, 1] += 12  # means 1 and 3: a variance of 2, and a standard error of 1
+    assert spread.unsure(sums, 4, everywhere).tolist() == [[True, True, False]]
+    sums[0, 0, 1] += 8  # 1, 3, 2: a variance of 1, an error of 0.577
+    assert spread.unsure(sums, 4, np.array([[True, True, False]])).tolist() == [[True, True, False]]
+    sums[0, 0, 1] += 8  # 1, 3, 2, 2: 2/3, 0.408
+    assert not spread.unsure(sums, 4, np.array([[True, True, False]])).any()
+    assert spread.samples.tolist() == [[16, 16, 8]]
 
 
 # ---- The command
@@ -232,10 +298,12 @@ def test_what_does_not_go_together(whitted, scene, tmp_path, options, message):
     assert not (tmp_path / "a.ppm").exists()
 
 
-def test_sampled_scenes_are_refused(whitted, small_scene, tmp_path):
-    lights = (replace(small_scene.lights[0], radius=1.0), *small_scene.lights[1:])
-    file = tmp_path / "soft.in"
-    file.write_text(write_scene(replace(small_scene, lights=lights)))
-    status, _, err = whitted("render", file, tmp_path / "a.ppm", "--method", "native", "--adaptive", 8)
-    assert status == 2
-    assert "soft.in:8: light 1 has a radius, and --adaptive is for scenes in which nothing is random" in err
+def test_the_command_in_a_sampled_scene(whitted, small_scene, tmp_path):
+    file, where = tmp_path / "soft.in", tmp_path / "where.ppm"
+    file.write_text(write_scene(sampled(small_scene)))
+    options = ("--method", "native", "--adaptive", 4, "--samples", 64, "--adaptive-map", where, "--stats")
+    status, printed, _ = whitted("render", file, tmp_path / "a.ppm", 64, 48, *options)
+    assert status == 0
+    told = dict(line.rsplit(None, 1) for line in printed.splitlines() if line.strip())
+    assert 16 < float(told["rays a pixel"]) < 64
+    assert 3 <= len(set(where.read_bytes()[13:])) <= 7

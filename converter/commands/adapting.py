@@ -1,4 +1,4 @@
-"""`--adaptive`: pixels that are unlike their neighbours are drawn with more samples."""
+"""`--adaptive`: pixels are drawn with more samples where they need them."""
 
 import argparse
 from dataclasses import replace
@@ -13,35 +13,50 @@ if TYPE_CHECKING:
 
 
 class Adapting:
-    """Chooses the pixels of a picture, for `draw`, and keeps what was chosen."""
+    """A `Refinement` of one picture, which keeps how many samples each pixel has got."""
 
     def __init__(self, limit: float, samples: int) -> None:
         self._limit = limit
-        self._samples = samples
-        self._chosen: Any = None
+        self._most = samples
+        self._spread: Any = None
+        self._samples: Any = None
 
-    def __call__(self, signatures: Any, colors: Any) -> Any:
-        """Choose, as `converter.renderers.base.Choose` has it."""
+    def unlike(self, signatures: Any, colors: Any) -> Any:
+        """The pixels that need all samples, as `Refinement` has it."""
         from converter.renderers.adaptive import unlike_neighbors
 
-        self._chosen = unlike_neighbors(signatures, colors, self._limit)
-        return self._chosen
+        result = unlike_neighbors(signatures, colors, self._limit)
+        self._samples = 1 + self._most * result.astype("uint32")
+        return result
+
+    def unsure(self, sums: Any, size: int, drawn: Any) -> Any:
+        """The pixels that need another pass, as `Refinement` has it."""
+        from converter.renderers.adaptive import Spread
+
+        self._spread = self._spread or Spread(self._limit)
+        result = self._spread.unsure(sums, size, drawn)
+        self._samples = self._spread.samples
+        return result
 
     def statistics(self) -> dict[str, Any]:
-        """How many pixels were refined, and how many rays from the eye a pixel has in the mean."""
-        share = float(self._chosen.mean())
-        refined = int(self._chosen.sum())
-        return {"refined_pixels": refined, "refined_share": share, "rays_a_pixel": 1 + self._samples * share}
+        """How many pixels got all samples, and how many rays from the eye a pixel has in the mean."""
+        refined = self._samples >= self._most
+        return {
+            "refined_pixels": int(refined.sum()),
+            "refined_share": round(float(refined.mean()), 4),
+            "rays_a_pixel": round(float(self._samples.mean()), 4),
+        }
 
     def write_map(self, file: Path) -> None:
-        """Draw the pixels that were chosen: white, the others black."""
+        """Draw how many samples pixels have: white for all, black for one."""
         import numpy as np
 
         from converter.images.write import write_image
 
-        height, width = self._chosen.shape
+        height, width = self._samples.shape
+        gray = (np.minimum(self._samples, self._most) - 1) / (self._most - 1)
         ending = None if file.suffix else ".ppm"
-        write_image(file, np.repeat(self._chosen[..., None], 3, axis=2).astype(np.float32), width, height, ending)
+        write_image(file, np.repeat(gray[..., None], 3, axis=2).astype(np.float32), width, height, ending)
 
 
 def adapting(arguments: argparse.Namespace, method: "Chosen") -> tuple[Adapting | None, Settings]:

@@ -11,10 +11,9 @@ from converter.files import check_apart, is_special
 from converter.images.write import check_writable, write_image
 from converter.pigments.table import pigment_kind
 from converter.renderers.base import (
-    Choose,
-    EffectUnavailable,
     Interrupted,
     Passes,
+    Refinement,
     Renderer,
     Rendering,
     draws_adaptively,
@@ -46,21 +45,20 @@ def draw(
     keeping: Keeping | None = None,
     method: "Method | None" = None,
     ending: str | None = None,
-    choose: Choose | None = None,
+    refinement: Refinement | None = None,
 ) -> tuple[Rendering, dict[str, float]]:
     """Draw a scene into an image file, which appears whole or not at all; return the picture and seconds by stage.
 
     With the `method` that the renderer belongs to, regions are named in which it is known to fail; None is `raytrace`.
     With `keeping`, Ctrl-C writes what is drawn before `Interrupted` goes on to the caller, and a file to go on from if
-    whole passes are. `ending` chooses the image's format, if `out` does not. With `choose`, the pixels that it says get
-    all samples, and the others one.
+    whole passes are. `ending` chooses the image's format, if `out` does not. With `refinement`, pixels get more samples
+    where it asks for them.
 
     Raises:
         SceneError: the scene is no scene.
         OSError: the image cannot be written there, or is what the scene is read from; known before anything is drawn.
         RendererUnavailable: the renderer does not run here.
         ResumeError: what was kept is no part of this picture.
-        EffectUnavailable: the renderer does not draw an effect that the scene has, or `choose` is for none that are.
         Interrupted: Ctrl-C while drawing.
 
     """
@@ -68,8 +66,6 @@ def draw(
     check_writable(out, ending)
     started = time.perf_counter()
     scene = load_with_notices(scene_file, settings, quiet, method)
-    if choose is not None:
-        _refuse_sampled(scene, settings)
     check_apart(out, (file for pigment in scene.pigments for file in pigment_kind(pigment).files(pigment)))
     if not quiet:
         from converter.commands.readings import ior_notices_that_show
@@ -80,8 +76,8 @@ def draw(
     with ProgressBar(out.name, quiet) as progress:
         try:
             start = _kept(scene, out, settings, keeping, quiet)
-            if choose is not None and draws_adaptively(renderer):
-                rendering = renderer.render_adaptively(scene, settings, choose, progress)
+            if refinement is not None and draws_adaptively(renderer):
+                rendering = renderer.render_adaptively(scene, settings, refinement, progress)
             elif start is not None and draws_in_passes(renderer):
                 rendering = renderer.render(scene, settings, progress, start)
             else:
@@ -102,14 +98,6 @@ def draw(
         say(f"warning: {out}: {warning}", quiet)
     seconds = {"read": read - started, **rendering.seconds, "write": time.perf_counter() - drawn}
     return rendering, seconds
-
-
-def _refuse_sampled(scene: Scene, settings: Settings) -> None:
-    """Refuse a scene in which something is random: one sample does not tell there what a pixel's rays meet."""
-    from converter.scene.needs import scene_needs
-
-    for cause in scene_needs(scene, settings).effects.values():
-        raise EffectUnavailable(f"{cause}, and --adaptive is for scenes in which nothing is random")
 
 
 def _kept(scene: Scene, out: Path, settings: Settings, keeping: Keeping | None, quiet: bool) -> Passes | None:

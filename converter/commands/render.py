@@ -64,11 +64,14 @@ def _add_adaptive_options(parser: Parser) -> None:
         "--adaptive",
         type=not_negative,
         metavar="LIMIT",
-        help=f"draw pixels with --samples rays ({SAMPLES}) that are unlike a neighbour, in what their rays meet or by "
-        "more than LIMIT of 255 levels, and the others with one",
+        help=f"draw pixels with up to --samples rays ({SAMPLES}) that are unlike a neighbour, in what their rays meet "
+        "or by more than LIMIT of 255 levels, or whose error is above LIMIT in sampled scenes, and the others with few",
     )
     group.add_argument(
-        "--adaptive-map", action=Result, metavar="FILE", help="draw which pixels these are, white on black"
+        "--adaptive-map",
+        action=Result,
+        metavar="FILE",
+        help="draw how many rays pixels have: white for all, black for one",
     )
 
 

@@ -1,9 +1,6 @@
-"""Which pixels are drawn with more samples: those that are unlike one of their neighbours.
+"""Which pixels are drawn with more samples: those that are unlike a neighbour, or whose mean is not sure yet."""
 
-Kirk and Arvo, Unbiased Sampling Techniques for Image Synthesis, SIGGRAPH 1991, on why the first samples are not reused.
-"""
-
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -30,11 +27,61 @@ def unlike_neighbors(
     """
     levels = np.frombuffer(quantize(colors.data), np.uint8).reshape(colors.shape).astype(np.int16)
     result = np.zeros(signatures.shape, np.bool_)
-    for one, other in (
-        ((slice(1, None), slice(None)), (slice(None, -1), slice(None))),
-        ((slice(None), slice(1, None)), (slice(None), slice(None, -1))),
-    ):
+    for one, other in _NEIGHBORS:
         unlike = (signatures[one] != signatures[other]) | (np.abs(levels[one] - levels[other]).max(axis=-1) > limit)
         result[one] |= unlike
         result[other] |= unlike
     return result
+
+
+class Spread:
+    """How far the means of pixels may be off, by how far the means of passes differ.
+
+    Passes are strata of the same samples, and so differ by more than independent ones would in proportion to the error
+    of their mean: what is told is too large rather than too small.
+
+    Attributes:
+        samples: (height, width), how many a pixel has.
+
+    """
+
+    def __init__(self, limit: float) -> None:
+        self._limit = limit / 255
+        self._passes = 0
+        self.samples: Any = 0
+
+    def unsure(self, sums: "NDArray[np.float64]", size: int, drawn: "NDArray[np.bool_]") -> "NDArray[np.bool_]":
+        """The pixels among those `drawn`, in another pass of `size` samples, whose standard error, or that of one of
+        their four neighbours, is above the limit in some channel; all after the first pass.
+
+        Args:
+            sums: (height, width, 3), of the samples' colours.
+            size: samples a pixel.
+            drawn: (height, width).
+
+        """
+        if self._passes == 0:
+            self._before, self._squares = np.zeros_like(sums), np.zeros_like(sums)
+        self._passes += 1
+        self.samples = self.samples + size * drawn.astype(np.uint32)
+        now = sums[drawn]
+        self._squares[drawn] += (now - self._before[drawn]) ** 2
+        self._before[drawn] = now
+        if self._passes == 1:
+            return drawn.copy()
+        count = self._passes
+        variance = np.maximum(self._squares[drawn] - now**2 / count, 0) / (count - 1)
+        over = np.zeros(drawn.shape, np.bool_)
+        over[drawn] = ~(np.sqrt(variance / count).max(axis=-1) / size <= self._limit)
+        result = over.copy()
+        for one, other in _NEIGHBORS:
+            result[one] |= over[other]
+            result[other] |= over[one]
+        return result & drawn
+
+
+_NEIGHBORS = (
+    ((slice(1, None), slice(None)), (slice(None, -1), slice(None))),
+    ((slice(None), slice(1, None)), (slice(None), slice(None, -1))),
+)
+"""Slices of pixels, and of those above and to the left of them."""

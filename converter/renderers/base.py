@@ -125,10 +125,29 @@ def draws_in_passes(renderer: Renderer) -> TypeGuard[PassRenderer]:
     return getattr(renderer, "in_passes", False)
 
 
-Choose = Callable[[Any, Any], Any]
-"""From the signatures (height, width) uint32 and the colours (height, width, 3) float32 of pixels to those that are to
-be refined, (height, width) bool; all are NumPy arrays.
-"""
+class Refinement(Protocol):
+    """Says which pixels of one picture need more samples. Arrays are NumPy's, and masks (height, width) bool."""
+
+    def unlike(self, signatures: Any, colors: Any) -> Any:
+        """In a scene in which nothing is random, the pixels that need all samples, when each has one.
+
+        Args:
+            signatures: (height, width) uint32, a word for what is decided along the rays of each pixel.
+            colors: (height, width, 3) float32, linear RGB.
+
+        """
+        ...
+
+    def unsure(self, sums: Any, size: int, drawn: Any) -> Any:
+        """In a scene that is sampled, the pixels that need another pass.
+
+        Args:
+            sums: (height, width, 3) float64, of the colours of all samples.
+            size: samples in the last pass.
+            drawn: mask of the pixels that had it.
+
+        """
+        ...
 
 
 class AdaptiveRenderer(Renderer, Protocol):
@@ -139,9 +158,10 @@ class AdaptiveRenderer(Renderer, Protocol):
         ...
 
     def render_adaptively(
-        self, scene: Scene, settings: Settings, choose: Choose, progress: Progress | None = None
+        self, scene: Scene, settings: Settings, refinement: Refinement, progress: Progress | None = None
     ) -> Rendering:
-        """Draw `scene` with one sample a pixel, and those that `choose` then says with as many as `settings` tell.
+        """Draw `scene` with few samples a pixel, and with more, up to as many as `settings` tell, where `refinement`
+        asks for them.
 
         Raises:
             Interrupted: Ctrl-C while it was drawing.
@@ -155,12 +175,14 @@ def draws_adaptively(renderer: Renderer) -> TypeGuard[AdaptiveRenderer]:
     return hasattr(renderer, "render_adaptively")
 
 
-def in_two_parts(progress: Progress | None, samples: int) -> tuple[Progress | None, Progress | None]:
-    """A `Progress` for a picture of one sample a pixel, and one for the pixels that are refined then; about a tenth."""
-    if progress is None:
-        return None, None
-    first = 1 / (1 + samples / 10)
-    return lambda share: progress(first * share), lambda share: progress(first + (1 - first) * share)
+def share_of_first(samples: int) -> float:
+    """What share of the time one sample a pixel takes, about, where a tenth of the pixels is refined then."""
+    return 1 / (1 + samples / 10)
+
+
+def part_of(progress: Progress | None, begin: float, end: float) -> Progress | None:
+    """A `Progress` for the part of a picture from one share to another."""
+    return None if progress is None else lambda share: progress(begin + (end - begin) * share)
 
 
 class RayTeller(Renderer, Protocol):

@@ -8,17 +8,19 @@ from dataclasses import dataclass
 from typing import Any, ClassVar
 
 from converter.renderers.base import (
-    Choose,
     Interrupted,
     Passes,
     Progress,
+    Refinement,
     RendererUnavailable,
     Rendering,
     ResumeError,
-    in_two_parts,
+    part_of,
+    share_of_first,
 )
 from converter.renderers.records import PixelRecord
 from converter.scene.model import Scene
+from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings
 from converter.to_mitsuba.fineness import USUAL, Fineness
 from converter.to_mitsuba.integrator import Intersections, RayPrecision
@@ -109,10 +111,12 @@ class MitsubaRenderer:
         return "what Embree or OptiX says of a hit is not enough to compare pixels by"
 
     def render_adaptively(
-        self, scene: Scene, settings: Settings, choose: Choose, progress: Progress | None = None
+        self, scene: Scene, settings: Settings, refinement: Refinement, progress: Progress | None = None
     ) -> Rendering:
         """Draw adaptively, as `AdaptiveRenderer` has it."""
         import numpy as np
+
+        from native_tracer.passes import passes
 
         started = time.perf_counter()
         variant = self._start()
@@ -122,36 +126,54 @@ class MitsubaRenderer:
 
         width, height = settings.width, settings.height
         pixels = np.zeros((height, width, 3), dtype=np.float32)
-        signatures = np.zeros((height, width), dtype=np.uint32)
         integrator, sensor = mitsuba_scene.integrator(), mitsuba_scene.sensors()[0]
-        first, second = in_two_parts(progress, sensor.sampler().sample_count())
-        too_deep = 0
-        signed = chosen = built
+        samples = sensor.sampler().sample_count()
+        too_deep = [0]
 
         def rendering() -> Rendering:
-            seconds = {"start": ready - started, "build": built - ready, "sign": signed - built}
-            seconds |= {"choose": chosen - signed, "render": time.perf_counter() - chosen}
+            seconds = {"start": ready - started, "build": built - ready, "render": time.perf_counter() - built}
             statistics = {
                 "variant": variant,
                 "intersections": integrator.intersections,
                 "precision": integrator.precision,
-                "pixels_too_deep": max(too_deep, integrator.pixels_too_deep),
+                "pixels_too_deep": max(*too_deep, integrator.pixels_too_deep),
             }
             return Rendering(pixels, width, height, seconds, statistics)
 
+        def add(sums: Any, mask: Any, cells: list[int], count: int, told: Progress | None) -> None:
+            """Add the samples of these cells to the sums of pixels, and show the mean, of `count`."""
+            numbers = np.flatnonzero(mask).astype(np.uint32)
+            for at, color in integrator.chosen_pixels(mitsuba_scene, sensor, numbers, cells, told):
+                chosen = numbers[at : at + color.shape[1]]
+                sums.reshape(-1, 3)[chosen] += np.asarray(color).T
+                pixels.reshape(-1, 3)[chosen] = sums.reshape(-1, 3)[chosen] / count
+            too_deep.append(integrator.pixels_too_deep)
+
         try:
             with _threads(settings.threads):
-                for row, color, words in integrator.signed_bands(mitsuba_scene, sensor, first):
-                    rows = np.moveaxis(np.asarray(color), 0, -1).reshape(-1, width, 3)
-                    pixels[row : row + len(rows)] = rows
-                    signatures[row : row + len(rows)] = np.asarray(words).reshape(-1, width)
-                too_deep = integrator.pixels_too_deep
-                signed = time.perf_counter()
-                numbers = np.flatnonzero(choose(signatures, pixels)).astype(np.uint32)
-                chosen = time.perf_counter()
-                for at, color in integrator.chosen_pixels(mitsuba_scene, sensor, numbers, second):
-                    colors = np.moveaxis(np.asarray(color), 0, -1)
-                    pixels.reshape(-1, 3)[numbers[at : at + len(colors)]] = colors
+                sums = np.zeros((height, width, 3))
+                if scene_needs(scene, settings).sampled:
+                    all_passes, done = passes(samples, 1), 0
+                    mask = np.ones((height, width), np.bool_)
+                    for cells in all_passes:
+                        told = part_of(progress, done / samples, (done + len(cells)) / samples)
+                        done += len(cells)
+                        add(sums, mask, cells, done, told)
+                        mask = refinement.unsure(sums, len(cells), mask)
+                        if not mask.any():
+                            break
+                else:
+                    signatures = np.zeros((height, width), dtype=np.uint32)
+                    first = share_of_first(samples)
+                    bands = integrator.signed_bands(mitsuba_scene, sensor, part_of(progress, 0, first))
+                    for row, color, words in bands:
+                        rows = np.moveaxis(np.asarray(color), 0, -1).reshape(-1, width, 3)
+                        pixels[row : row + len(rows)] = rows
+                        signatures[row : row + len(rows)] = np.asarray(words).reshape(-1, width)
+                    too_deep.append(integrator.pixels_too_deep)
+                    mask = refinement.unlike(signatures, pixels)
+                    cells = [cell for cells in passes(samples) for cell in cells]
+                    add(sums, mask, cells, samples, part_of(progress, first, 1))
         except KeyboardInterrupt:
             raise Interrupted(rendering()) from None
         except RuntimeError as error:

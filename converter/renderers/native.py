@@ -4,20 +4,22 @@ import os
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from converter.analysis.coplanar import with_planes_shared
 from converter.pigments.table import pigment_kind
 from converter.renderers.base import (
-    Choose,
     Interrupted,
     Passes,
     Progress,
+    Refinement,
     RendererUnavailable,
     Rendering,
-    in_two_parts,
+    part_of,
     refuse_effects,
+    share_of_first,
 )
 from converter.scene.effects import Effect
 from converter.scene.geometry import simplified
@@ -96,7 +98,7 @@ class NativeRenderer:
         return None
 
     def render_adaptively(
-        self, scene: Scene, settings: Settings, choose: Choose, progress: Progress | None = None
+        self, scene: Scene, settings: Settings, refinement: Refinement, progress: Progress | None = None
     ) -> Rendering:
         """Draw adaptively, as `AdaptiveRenderer` has it."""
         import numpy as np
@@ -107,32 +109,37 @@ class NativeRenderer:
         needs = scene_needs(scene, settings)
         native_scene = build_scene(scene, needs)
         image = tracer.Image(settings.width, settings.height)
-        signatures = np.zeros((settings.height, settings.width), np.uint32)
         options = self._options(settings, needs) | {"threads": settings.threads or available_cores()}
-        first, second = in_two_parts(progress, needs.samples)
+        draw = partial(tracer.render, native_scene, image, **options)
         built = time.perf_counter()
-        statistics: dict[str, Any] = {}
-        chosen = signed = built
+        statistics: list[dict[str, Any]] = []
 
         def rendering() -> Rendering:
-            ended = time.perf_counter()
-            seconds = {"build": built - started, "sign": signed - built, "choose": chosen - signed}
-            seconds["render"] = ended - chosen
-            for name, value in image.statistics.items():
-                kept = statistics.get(name, value)
-                statistics[name] = kept + value if name in _RAYS and statistics else value
-                if name in ("deepest", "pixels_too_deep"):
-                    statistics[name] = max(kept, value)
-            rays = {"rays": sum(statistics[kind] for kind in _RAYS)}
-            return Rendering(image.pixels, image.width, image.height, seconds, rays | statistics)
+            seconds = {"build": built - started, "render": time.perf_counter() - built}
+            every = [*statistics, image.statistics]
+            found = dict(image.statistics) | {kind: sum(each[kind] for each in every) for kind in _RAYS}
+            found |= {name: max(each[name] for each in every) for name in ("deepest", "pixels_too_deep")}
+            rays = {"rays": sum(found[kind] for kind in _RAYS)}
+            return Rendering(image.pixels, image.width, image.height, seconds, rays | found)
 
         try:
-            tracer.render(native_scene, image, signatures=signatures, progress=first, **options | {"samples": 1})
-            statistics |= image.statistics
-            signed = time.perf_counter()
-            mask = choose(signatures, np.asarray(image.pixels))
-            chosen = time.perf_counter()
-            tracer.render(native_scene, image, mask=mask.view(np.uint8), progress=second, **options)
+            if needs.sampled:
+                sums = tracer.PassSums(settings.width, settings.height)
+                all_passes = _passes(needs.samples, 1)
+                mask = np.ones((settings.height, settings.width), np.bool_)
+                for done, cells in enumerate(all_passes):
+                    told = part_of(progress, 0, (done + 1) / len(all_passes))
+                    draw(passes=all_passes[: done + 1], sums=sums, mask=mask.view(np.uint8), progress=told)
+                    mask = refinement.unsure(np.asarray(sums.colors), len(cells), mask)
+                    if not mask.any():
+                        break
+            else:
+                signatures = np.zeros((settings.height, settings.width), np.uint32)
+                first = share_of_first(needs.samples)
+                draw(samples=1, signatures=signatures, progress=part_of(progress, 0, first))
+                statistics.append(image.statistics)
+                mask = refinement.unlike(signatures, np.asarray(image.pixels))
+                draw(mask=mask.view(np.uint8), progress=part_of(progress, first, 1))
         except KeyboardInterrupt:
             raise Interrupted(rendering()) from None
         return rendering()
@@ -169,10 +176,10 @@ class NativeRenderer:
         }
 
 
-def _passes(samples: int) -> list[list[int]]:
+def _passes(samples: int, in_one: int | None = None) -> list[list[int]]:
     from native_tracer.passes import passes  # late: it may not be built
 
-    return passes(samples)
+    return passes(samples) if in_one is None else passes(samples, in_one)
 
 
 def _pass_sums(tracer: ModuleType, settings: Settings, start: Passes | None) -> Any:

@@ -455,7 +455,9 @@ class Whitted(mi.SamplingIntegrator):
         with self.prepared(scene, sensor), dr.suspend_grad():
             pace = Pace(self.branching, self.max_depth[0])
             self.pixels_too_deep = 0
-            for first, color, too_deep in self._stage(sensor, pace, self._tables(cells), 0, len(cells), None, progress):
+            for first, color, too_deep in self._stage(
+                sensor, pace, self._tables(cells, len(cells)), 0, len(cells), None, progress
+            ):
                 if self.depth_limited:
                     self.pixels_too_deep += dr.count(too_deep)[0]
                 yield first, mi.Color3f(quotient(color, len(cells)))
@@ -474,7 +476,7 @@ class Whitted(mi.SamplingIntegrator):
         width, height = sensor.film().crop_size()
         with self.prepared(scene, sensor), dr.suspend_grad():
             pace = Pace(self.branching, self.max_depth[0])
-            tables = self._tables(cells)
+            tables = self._tables(cells, len(cells))
             self.sums = start or PassSums(0, dr.zeros(mi.Color3d, width * height), dr.zeros(mi.Bool, width * height))
             while self.sums.passes < len(all_passes):
                 size = len(all_passes[0])
@@ -524,18 +526,18 @@ class Whitted(mi.SamplingIntegrator):
                 if progress is not None:
                     progress(first / height)
 
-    def chosen_pixels(self, scene, sensor, numbers, progress=None):
-        """Draw some pixels, with all their samples. Their `numbers` (NumPy, uint32) count row by row within the film's
-        crop window.
+    def chosen_pixels(self, scene, sensor, numbers, cells, progress=None):
+        """Draw some pixels, with the samples in some cells of the grid. The `numbers` of the pixels (NumPy, uint32)
+        count row by row within the film's crop window.
 
         Yields:
-            The index of a pixel among them, and the colours (Color3f) from it on, as many as are drawn at once.
+            The index of a pixel among them, and the sums of the samples' colours (Color3d) from it on, for as many as
+            are drawn at once.
 
         """
-        cells = [cell for cells in passes(sensor.sampler().sample_count()) for cell in cells]
         with self.prepared(scene, sensor), dr.suspend_grad():
             pace = Pace(self.branching, self.max_depth[0])
-            tables = self._tables(cells)
+            tables = self._tables(cells, sensor.sampler().sample_count())
             self.pixels_too_deep = 0
             first = 0
             while first < len(numbers):
@@ -556,7 +558,7 @@ class Whitted(mi.SamplingIntegrator):
                         progress((first + count * done / len(cells)) / len(numbers))
                 if self.depth_limited:
                     self.pixels_too_deep += dr.count(too_deep)[0]
-                yield first, mi.Color3f(quotient(color, len(cells)))
+                yield first, color
                 first += count
 
     def _hit_word(self, ray: Ray, hit: Hit, path):
@@ -566,9 +568,9 @@ class Whitted(mi.SamplingIntegrator):
         inside = dr.select(hit.inside, mi.UInt32(1), 0)
         return hit_word(path, hit.object, piece, inside, cell)
 
-    def _tables(self, cells):
-        """Where the samples of a pixel lie, in the order in which they are drawn, and their numbers."""
-        offsets = self.sample_offsets(len(cells))
+    def _tables(self, cells, spp):
+        """Where some of `spp` samples of a pixel lie, in the order in which they are drawn, and their numbers."""
+        offsets = self.sample_offsets(spp)
         return column(mi.Float64, [offsets[cell] for cell in cells]), mi.UInt32(cells)
 
     def _stage(self, sensor, pace, tables, begin, end, sums, progress):

@@ -51,9 +51,9 @@ class Kernel {
                            const std::atomic<bool>& stop) const = 0;
 
     // The same with some of the samples only: their sums are added to those before, and the picture has the mean of all
-    // so far.
-    virtual bool add_samples(const Tile& tile, const Places& places, const SampleSums& sums, float* picture,
-                             RayCounts& counts, const std::atomic<bool>& stop) const = 0;
+    // so far. With a mask, sums and colours of other pixels stay what they are.
+    virtual bool add_samples(const Tile& tile, const Places& places, const unsigned char* mask, const SampleSums& sums,
+                             float* picture, RayCounts& counts, const std::atomic<bool>& stop) const = 0;
 
     // Whether the objects are searched by a tree.
     virtual bool uses_tree() const = 0;

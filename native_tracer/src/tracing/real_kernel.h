@@ -60,16 +60,19 @@ class RealKernel final : public Kernel {
         });
     }
 
-    bool add_samples(const Tile& tile, const Places& places, const SampleSums& sums, float* picture, RayCounts& counts,
-                     const std::atomic<bool>& stop) const override {
+    bool add_samples(const Tile& tile, const Places& places, const unsigned char* mask, const SampleSums& sums,
+                     float* picture, RayCounts& counts, const std::atomic<bool>& stop) const override {
         Unobserved unobserved;
-        const PrimaryRays<Real> rays(camera_, scene_.eye_contact, settings_, tile, &places);
+        const PrimaryRays<Real> rays(camera_, scene_.eye_contact, settings_, tile, &places, mask);
         return trace_pixels(unobserved, tile, rays, counts, stop, [&](const Pixel& pixel) {
             const double* before = sums.before + 3 * pixel.index;
             double* after = sums.after + 3 * pixel.index;
             after[0] = before[0] + static_cast<double>(pixel.sum.x);
             after[1] = before[1] + static_cast<double>(pixel.sum.y);
             after[2] = before[2] + static_cast<double>(pixel.sum.z);
+            if (mask != nullptr && mask[pixel.index] == 0) {
+                return;
+            }
             store_mean(Color<double>{after[0], after[1], after[2]}, sums.samples, picture + 3 * pixel.index);
             if (pixel.too_deep) {
                 sums.too_deep[pixel.index] = 1;

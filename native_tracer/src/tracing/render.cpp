@@ -199,8 +199,8 @@ void render_signed(const Kernel& kernel, Image& image, std::uint32_t* signatures
     });
 }
 
-void render(const Kernel& kernel, Image& image, PassSums& sums, const std::vector<Places>& passes, int threads,
-            const std::function<void(double)>& watch) {
+void render(const Kernel& kernel, Image& image, PassSums& sums, const std::vector<Places>& passes,
+            const unsigned char* mask, int threads, const std::function<void(double)>& watch) {
     if (image.width() != sums.width() || image.height() != sums.height()) {
         throw std::invalid_argument("an image and its sums have the same size");
     }
@@ -210,7 +210,7 @@ void render(const Kernel& kernel, Image& image, PassSums& sums, const std::vecto
     for (int pass = 0; pass < std::min(sums.passes, last); ++pass) {
         samples += static_cast<int>(passes[static_cast<std::size_t>(pass)].size());
     }
-    if (samples > 0) {
+    if (samples > 0 && mask == nullptr) {
         sums.show(image, samples);
     }
     image.by_tree = kernel.uses_tree();
@@ -219,7 +219,7 @@ void render(const Kernel& kernel, Image& image, PassSums& sums, const std::vecto
         samples += static_cast<int>(places.size());
         const SampleSums tiles{sums.current_.get(), sums.next_.get(), sums.too_deep(), samples};
         const auto draw_tile = [&](const Tile& tile, RayCounts& counts, const std::atomic<bool>& stop) {
-            return kernel.add_samples(tile, places, tiles, image.data(), counts, stop);
+            return kernel.add_samples(tile, places, mask, tiles, image.data(), counts, stop);
         };
         Drawing(image, draw_tile).run(threads, [&](double share) { watch((sums.passes + share) / last); });
         add(sums.counts, image.counts);

@@ -53,7 +53,7 @@ class PassSums {
     RayCounts counts;  // of theirs
 
  private:
-    friend void render(const Kernel&, Image&, PassSums&, const std::vector<Places>&, int,
+    friend void render(const Kernel&, Image&, PassSums&, const std::vector<Places>&, const unsigned char*, int,
                        const std::function<void(double)>&);
 
     struct Free {
@@ -81,8 +81,8 @@ void render_signed(const Kernel& kernel, Image& image, std::uint32_t* signatures
 
 // The same, pass after pass over the whole picture, each with some places of every pixel. Those that are in `sums` are
 // not drawn again. The picture has the mean of what is drawn of it at every moment; if drawing is stopped, the sums
-// have the passes that are whole.
-void render(const Kernel& kernel, Image& image, PassSums& sums, const std::vector<Places>& passes, int threads,
-            const std::function<void(double)>& watch);
+// have the passes that are whole. With a mask, height x width, other pixels stay what they are.
+void render(const Kernel& kernel, Image& image, PassSums& sums, const std::vector<Places>& passes,
+            const unsigned char* mask, int threads, const std::function<void(double)>& watch);
 
 }  // namespace whitted
