@@ -136,6 +136,8 @@ def test_pixels_too_deep_are_counted_once(renderer, small_scene):
     again = renderer.render(small_scene, settings, None, partial.passes)
     counts = [r.statistics["pixels_too_deep"] for r in (few, whole, again)]
     assert 0 < counts[0] <= counts[1] == counts[2] <= 24 * 18
+    everywhere = replace(partial.passes, too_deep=np.ones((18, 24), np.uint8))
+    assert renderer.render(small_scene, settings, None, everywhere).statistics["pixels_too_deep"] == 24 * 18
 
 
 def test_few_samples_are_one_pass(renderer, small_scene):

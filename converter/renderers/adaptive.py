@@ -37,8 +37,8 @@ def unlike_neighbors(
 class Spread:
     """How far the means of pixels may be off, by how far the means of passes differ.
 
-    Passes are strata of the same samples, and so differ by more than independent ones would in proportion to the error
-    of their mean: what is told is too large rather than too small.
+    Passes complete one another, so that their mean is better than that of independent ones, which differ as much. But
+    with few samples a pass all of them may miss what is small.
 
     Attributes:
         samples: (height, width), how many a pixel has.
