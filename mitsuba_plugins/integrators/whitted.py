@@ -189,7 +189,7 @@ class Whitted(mi.SamplingIntegrator):
         """
         primitives = Primitives(self.types, self.surfaces)
         self.first_primitives = primitives.first
-        self._pieces = column(mi.UInt32, primitives.pieces)
+        self._pieces = column(mi.UInt32, primitives.pieces) if signing else None
         # These, too, are read anew each time: they are what mitsuba.traverse lets a user change.
         self._materials = Materials(self.types, [self._bsdfs.by_name[surface.material] for surface in self.surfaces])
         self._lights = Lights(self.types, scene.emitters())
