@@ -1,6 +1,6 @@
 """Prints the figures of the README: agreement of the renderers on every scene, why pixels disagree, speed, memory.
 
-    python benchmarks/figures.py [memory] [agreement] [bytes] [classes] [speed] [samples]
+    python benchmarks/figures.py [memory] [agreement] [bytes] [classes] [speed] [samples] [adaptive]
 
 Times are medians of runs that take turns, so that a machine whose speed drifts is fair to all; they depend on the
 machine, their ratios much less. POV-Ray joins where it is installed.
@@ -15,12 +15,13 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from functools import partial
 from pathlib import Path
 
 import numpy as np
 
+from converter.commands.adapting import Adapting
 from converter.compare.classes import CLASSES, Class, explain, less_exact
 from converter.compare.metrics import compare_pixels
 from converter.renderers.base import Renderer, Rendering
@@ -29,6 +30,7 @@ from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
 from converter.renderers.povray import PovrayRenderer
 from converter.scene.model import Scene
+from converter.scene.needs import scene_needs
 from converter.scene.parser import load_scene, parse_scene
 from converter.scene.settings import Settings
 from native_tracer import quantize
@@ -43,6 +45,8 @@ FIGURE1 = ROOT / "scenes" / "figure1.in"
 PROGRAMS = Path(sys.executable).parent
 RUNS, FEW_RUNS = 11, 3
 RANDOM_SCENES = 200
+LIMITS = (4, 8, 32)
+"""Of adaptive sampling, in levels of 255."""
 
 
 def main() -> None:
@@ -55,6 +59,7 @@ def main() -> None:
         "classes": classes,
         "speed": speed,
         "samples": samples,
+        "adaptive": adaptive,
     }
     for name in sys.argv[1:] or parts:
         parts[name]()
@@ -190,6 +195,43 @@ def samples() -> None:
             if kind == "Mitsuba":
                 line += f"{'':<12}" + "".join(f"{_launches(render) / n:>8.3f}" for n, render in draw.items())
             print(line, flush=True)
+
+
+def adaptive() -> None:
+    """The gallery's scenes in which nothing is random: errors of adaptive and of uniform pictures, and rays."""
+    print("800 x 600, native: RMS error in levels of 255 against 256 samples a pixel: one sample, 16, and 16 where")
+    print("--adaptive LIMIT wants them, with the rays a pixel from the eye")
+    print(f"{'':<18}{'1':>8}{'16':>8}" + "".join(f"{f'LIMIT {limit}':>10}{'rays':>7}" for limit in LIMITS))
+    rows = []
+    for file in sorted((ROOT / "scenes").glob("*.in")):
+        scene = load_scene(file)
+        if not scene_needs(scene, Settings()).sampled:
+            rows.append(_adaptive_errors(scene))
+            print(f"{file.name:<18}{_adaptive_told(rows[-1])}", flush=True)
+    print(f"{'mean':<18}{_adaptive_told(np.mean(rows, axis=0))}")
+
+
+def _adaptive_errors(scene: Scene) -> list[float]:
+    native = NativeRenderer()
+    truth, one, many = (native.render(scene, Settings(samples=n)) for n in (256, 1, 16))
+    result = [_rms_levels(picture, truth) for picture in (one, many)]
+    for limit in LIMITS:
+        chosen = Adapting(limit, 16)
+        picture = native.render_adaptively(scene, Settings(samples=16), chosen)
+        result += [_rms_levels(picture, truth), chosen.statistics()["rays_a_pixel"]]
+    return result
+
+
+def _adaptive_told(row: Sequence[float]) -> str:
+    one, many, *others = row
+    pairs = zip(others[::2], others[1::2], strict=True)
+    return f"{one:>8.2f}{many:>8.2f}" + "".join(f"{error:>10.2f}{rays:>7.2f}" for error, rays in pairs)
+
+
+def _rms_levels(picture: Rendering, truth: Rendering) -> float:
+    """Root of the mean square of differences, in levels of 255, of what is seen of two pictures."""
+    seen = [np.clip(np.asarray(each.pixels, np.float64), 0, 1) for each in (picture, truth)]
+    return 255 * math.sqrt(np.mean((seen[0] - seen[1]) ** 2))
 
 
 def _render_seconds(render: Callable[[], Rendering]) -> float:

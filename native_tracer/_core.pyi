@@ -113,6 +113,23 @@ class Image:
     def statistics(self) -> _Statistics:
         """Rays of the last rendering by kind, its deepest bounce, its threads, and how it searched."""
 
+class PassSums:
+    """Sums of the samples of whole passes over a picture: what drawing may go on from."""
+
+    passes: int
+    """How many passes are in the sums."""
+    counts: dict[str, int]
+    """Rays of the passes by kind, and their deepest bounce."""
+
+    def __init__(self, width: int, height: int) -> None: ...
+    @property
+    def colors(self) -> memoryview[float]:
+        """A memoryview of height x width x 3 float64, not a copy; a new one after each rendering."""
+
+    @property
+    def too_deep(self) -> memoryview[int]:
+        """A memoryview of height x width bytes: 1 where the depth limit dropped a ray."""
+
 def render(
     scene: Scene,
     image: Image,
@@ -129,6 +146,10 @@ def render(
     threads: int = 0,
     progress: Callable[[float], object] | None = None,
     instructions: Literal["", "baseline", "avx2", "avx512"] = "",
+    passes: Sequence[Sequence[int]] = (),
+    sums: PassSums | None = None,
+    mask: Buffer | None = None,
+    signatures: Buffer | None = None,
 ) -> None:
     """Draw `scene` into `image`.
 
@@ -136,6 +157,10 @@ def render(
     so many; the picture's bytes are the same, and the image's statistics say which it was.
     `progress` is called about 20 times a second with the finished share; what it raises, and Ctrl-C, stop the
     rendering, and what is finished stays in the image. `instructions` forces an instruction set, "" takes the best.
+    With `sums`, of the image's size, it is drawn in `passes`, which name each sample once at most, see
+    `native_tracer.passes`: those that are in the sums are not drawn again, and those that become whole are added.
+    With a `mask` of bytes, height x width, only the pixels are drawn that are not 0 there. `signatures`, of height x
+    width uint32, get a word each for what is decided along the pixel's rays.
     """
 
 def trace_pixel(

@@ -318,14 +318,15 @@ HOST_DIVISIONS = {
     "intersection/analytic.py": {"_bound"},
     "intersection/columns.py": {"column"},
     "intersection/leaf_table.py": {"_sphere_around"},
+    "intersection/primitives.py": {"_pieces"},
     "intersection/rounding.py": {"camera_errors"},
     "intersection/shapes/polyhedron.py": {"contacts", "_normalised"},
     "intersection/shapes/quadric.py": {"_form", "_rows", "_anchor", "_contact"},
     "intersection/shapes/sphere.py": {"contacts"},
-    "integrators/pace.py": {"__init__", "rows", "samples", "launch"},
+    "integrators/pace.py": {"__init__", "rows", "samples", "passes", "launch"},
     "sampler.py": {"disc_point", "cone_direction", "_small_turn"},
     "trial.py": {"_memory"},
-    "integrators/whitted.py": {"__init__", "_bands", "_corners", "sample_offsets"},
+    "integrators/whitted.py": {"__init__", "_stage", "_corners", "sample_offsets"},
 }
 """Functions that divide Python's or NumPy's numbers, or whole numbers, or build a path."""
 

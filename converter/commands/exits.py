@@ -26,6 +26,7 @@ _UNUSABLE = (
     ("converter.to_mitsuba.meshes", "MeshError"),
     ("converter.renderers.povray", "PovrayError"),
     ("converter.renderers.base", "EffectUnavailable"),
+    ("converter.renderers.base", "ResumeError"),
 )
 _UNAVAILABLE = (("converter.renderers.base", "RendererUnavailable"), ("mitsuba_plugins.backend", "BackendError"))
 """Modules and the errors in them that a user can mend; by name, so that telling one loads nothing."""

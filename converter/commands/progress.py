@@ -31,7 +31,7 @@ class ProgressBar:
     def __call__(self, share: float) -> None:
         """Show that `share` of the picture is finished."""
         if self._bar is None and self._wanted and share < 1 and time.monotonic() - self._started >= PATIENCE:
-            self._bar = self._appear()
+            self._bar = self._appear(share)
         if self._bar is not None:
             self._bar.update(self._bar.task_ids[0], completed=share)
 
@@ -45,13 +45,14 @@ class ProgressBar:
             self._bar.stop()
             self._bar = None
 
-    def _appear(self) -> "Progress":
+    def _appear(self, share: float) -> "Progress":
         from rich.console import Console
         from rich.progress import BarColumn, Progress, TaskProgressColumn, TextColumn, TimeRemainingColumn
 
         columns = (TextColumn("{task.description}"), BarColumn(), TaskProgressColumn(), TimeRemainingColumn())
         bar = Progress(*columns, console=Console(stderr=True), transient=True)
         bar.add_task(_plain(self._what), total=1.0)
+        bar.update(bar.task_ids[0], completed=share)  # at the start, so that no speed is taken from it
         bar.start()
         return bar
 

@@ -2,7 +2,7 @@
 
 from collections.abc import Callable, Collection, Mapping, Sequence
 from dataclasses import dataclass, field
-from typing import TYPE_CHECKING, Any, Protocol, TypeGuard
+from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeGuard
 
 from converter.scene.effects import Effect
 from converter.scene.model import Scene
@@ -19,6 +19,25 @@ Progress = Callable[[float], None]
 
 
 @dataclass(frozen=True, slots=True)
+class Passes:
+    """The samples of a picture that are drawn, in whole passes over it: what drawing may go on from.
+
+    Attributes:
+        done: how many passes are whole. total: how many there are.
+        colors: (height, width, 3) float64 buffer, the sums of the samples' colours, linear RGB.
+        too_deep: (height, width) buffer of bytes, 1 where the depth limit has dropped a ray.
+        notes: what else a renderer remembers, such as counters, as JSON has it.
+
+    """
+
+    done: int
+    total: int
+    colors: "Buffer"
+    too_deep: "Buffer"
+    notes: Mapping[str, Any]
+
+
+@dataclass(frozen=True, slots=True)
 class Rendering:
     """A finished picture.
 
@@ -26,6 +45,7 @@ class Rendering:
         pixels: (height, width, 3) float32 buffer, linear RGB, row 0 on top, not clamped; `numpy.asarray` makes it an
         array. seconds: wall-clock seconds by stage, e.g. {"build": 0.01, "render": 0.04}, in the order they ran.
         statistics: the renderer's own counters, e.g. {"rays": 1862000, "threads": 2}.
+        passes: those that are whole, of a picture that is drawn in passes.
 
     """
 
@@ -34,10 +54,11 @@ class Rendering:
     height: int
     seconds: Mapping[str, float]
     statistics: Mapping[str, Any] = field(default_factory=dict)
+    passes: Passes | None = None
 
 
 class Interrupted(KeyboardInterrupt):
-    """The user stopped a rendering; `partial` holds it, black where it was not finished."""
+    """The user stopped a rendering; `partial` holds it, black where nothing is drawn."""
 
     def __init__(self, partial: Rendering) -> None:
         super().__init__("interrupted")
@@ -46,6 +67,10 @@ class Interrupted(KeyboardInterrupt):
 
 class RendererUnavailable(Exception):  # noqa: N818 - what it says
     """A renderer cannot run on this machine; the message says what is missing and what to install."""
+
+
+class ResumeError(Exception):
+    """Drawing cannot go on from what was drawn; the message says why."""
 
 
 class EffectUnavailable(RendererUnavailable):
@@ -77,6 +102,88 @@ class Renderer(Protocol):
 
         """
         ...
+
+
+class PassRenderer(Renderer, Protocol):
+    """A renderer that draws long pictures in passes."""
+
+    in_passes: ClassVar[bool]
+
+    def render(
+        self, scene: Scene, settings: Settings, progress: Progress | None = None, start: Passes | None = None
+    ) -> Rendering:
+        """Draw `scene`, and go on from the passes `start`, if given: the picture is the same.
+
+        Raises:
+            ResumeError: the renderer does not go on from these.
+
+        """
+        ...
+
+
+def draws_in_passes(renderer: Renderer) -> TypeGuard[PassRenderer]:
+    """Whether a renderer draws in passes."""
+    return getattr(renderer, "in_passes", False)
+
+
+class Refinement(Protocol):
+    """Says which pixels of one picture need more samples. Arrays are NumPy's, and masks (height, width) bool."""
+
+    def unlike(self, signatures: Any, colors: Any) -> Any:
+        """In a scene in which nothing is random, the pixels that need all samples, when each has one.
+
+        Args:
+            signatures: (height, width) uint32, a word for what is decided along the rays of each pixel.
+            colors: (height, width, 3) float32, linear RGB.
+
+        """
+        ...
+
+    def unsure(self, sums: Any, size: int, drawn: Any) -> Any:
+        """In a scene that is sampled, the pixels that need another pass.
+
+        Args:
+            sums: (height, width, 3) float64, of the colours of all samples.
+            size: samples in the last pass.
+            drawn: mask of the pixels that had it.
+
+        """
+        ...
+
+
+class AdaptiveRenderer(Renderer, Protocol):
+    """A renderer that draws some pixels with more samples than others."""
+
+    def unfit_to_adapt(self) -> str | None:
+        """Why it cannot, as it is set; None if it can."""
+        ...
+
+    def render_adaptively(
+        self, scene: Scene, settings: Settings, refinement: Refinement, progress: Progress | None = None
+    ) -> Rendering:
+        """Draw `scene` with few samples a pixel, and with more, up to as many as `settings` tell, where `refinement`
+        asks for them.
+
+        Raises:
+            Interrupted: Ctrl-C while it was drawing.
+
+        """
+        ...
+
+
+def draws_adaptively(renderer: Renderer) -> TypeGuard[AdaptiveRenderer]:
+    """Whether a renderer may draw some pixels with more samples than others."""
+    return hasattr(renderer, "render_adaptively")
+
+
+def share_of_first(samples: int) -> float:
+    """What share of the time one sample a pixel takes, about, where a tenth of the pixels is refined then."""
+    return 1 / (1 + samples / 10)
+
+
+def part_of(progress: Progress | None, begin: float, end: float) -> Progress | None:
+    """A `Progress` for the part of a picture from one share to another."""
+    return None if progress is None else lambda share: progress(begin + (end - begin) * share)
 
 
 class RayTeller(Renderer, Protocol):

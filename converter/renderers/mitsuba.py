@@ -5,11 +5,22 @@ import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, ClassVar
 
-from converter.renderers.base import Interrupted, Progress, RendererUnavailable, Rendering
+from converter.renderers.base import (
+    Interrupted,
+    Passes,
+    Progress,
+    Refinement,
+    RendererUnavailable,
+    Rendering,
+    ResumeError,
+    part_of,
+    share_of_first,
+)
 from converter.renderers.records import PixelRecord
 from converter.scene.model import Scene
+from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings
 from converter.to_mitsuba.fineness import USUAL, Fineness
 from converter.to_mitsuba.integrator import Intersections, RayPrecision
@@ -29,30 +40,40 @@ class MitsubaRenderer:
 
     """
 
+    in_passes: ClassVar[bool] = True
+
     variant: str = "auto"
     intersections: Intersections = "auto"
     precision: RayPrecision = "double"
     fineness: Fineness = USUAL
 
-    def render(self, scene: Scene, settings: Settings, progress: Progress | None = None) -> Rendering:
-        """Draw `scene`.
+    def render(
+        self, scene: Scene, settings: Settings, progress: Progress | None = None, start: Passes | None = None
+    ) -> Rendering:
+        """Draw `scene`, from the passes `start` on.
 
         Raises:
             RendererUnavailable: no variant runs here, or an effect that the scene has cannot be drawn.
+            ResumeError: `start` was drawn in another variant.
             ValueError: a texture cannot be read, or a polyhedron cannot be made into a mesh.
             Interrupted: Ctrl-C while it was drawing.
 
         """
         import numpy as np
 
+        from native_tracer.passes import passes
+
         started = time.perf_counter()
         variant = self._start()
         ready = time.perf_counter()
+        if start is not None and start.notes["variant"] != variant:
+            raise ResumeError(f"it was begun in {start.notes['variant']}, and this is {variant}: --variant chooses one")
         mitsuba_scene = self._load(scene, settings)
         built = time.perf_counter()
 
         pixels = np.zeros((settings.height, settings.width, 3), dtype=np.float32)
-        integrator = mitsuba_scene.integrator()
+        integrator, sensor = mitsuba_scene.integrator(), mitsuba_scene.sensors()[0]
+        all_passes = passes(sensor.sampler().sample_count())
 
         def rendering() -> Rendering:
             seconds = {"start": ready - started, "build": built - ready, "render": time.perf_counter() - built}
@@ -62,16 +83,103 @@ class MitsubaRenderer:
                 "precision": integrator.precision,
                 "pixels_too_deep": integrator.pixels_too_deep,
             }
-            return Rendering(pixels, settings.width, settings.height, seconds, statistics)
+            whole = _whole_passes(integrator.sums, pixels.shape, all_passes, variant)
+            return Rendering(pixels, settings.width, settings.height, seconds, statistics, whole)
 
         try:
             with _threads(settings.threads):
-                sensor = mitsuba_scene.sensors()[0]
-                for first, color in integrator.bands(mitsuba_scene, sensor, progress=progress):
+                if len(all_passes) == 1:
+                    bands = integrator.bands(mitsuba_scene, sensor, progress=progress)
+                else:
+                    sums = _sums_to_go_on_from(start, pixels)
+                    bands = integrator.bands_by_passes(mitsuba_scene, sensor, sums, progress)
+                for first, color in bands:
                     rows = np.moveaxis(np.asarray(color), 0, -1).reshape(-1, settings.width, 3)
                     pixels[first : first + len(rows)] = rows
         except KeyboardInterrupt:
             raise Interrupted(rendering()) from None
+        except RuntimeError as error:
+            if _comes_from_interrupt(error):
+                raise Interrupted(rendering()) from None
+            raise
+        return rendering()
+
+    def unfit_to_adapt(self) -> str | None:
+        """Why it cannot draw adaptively, as `AdaptiveRenderer` has it."""
+        if self.intersections in ("auto", "analytic", "bvh"):
+            return None
+        return "what Embree or OptiX says of a hit is not enough to compare pixels by"
+
+    def render_adaptively(
+        self, scene: Scene, settings: Settings, refinement: Refinement, progress: Progress | None = None
+    ) -> Rendering:
+        """Draw adaptively, as `AdaptiveRenderer` has it."""
+        import numpy as np
+
+        from native_tracer.passes import passes
+
+        started = time.perf_counter()
+        variant = self._start()
+        ready = time.perf_counter()
+        mitsuba_scene = self._load(scene, settings)
+        built = time.perf_counter()
+
+        width, height = settings.width, settings.height
+        pixels = np.zeros((height, width, 3), dtype=np.float32)
+        integrator, sensor = mitsuba_scene.integrator(), mitsuba_scene.sensors()[0]
+        samples = sensor.sampler().sample_count()
+        too_deep = [0]
+
+        def rendering() -> Rendering:
+            seconds = {"start": ready - started, "build": built - ready, "render": time.perf_counter() - built}
+            statistics = {
+                "variant": variant,
+                "intersections": integrator.intersections,
+                "precision": integrator.precision,
+                "pixels_too_deep": max(*too_deep, integrator.pixels_too_deep),
+            }
+            return Rendering(pixels, width, height, seconds, statistics)
+
+        def add(sums: Any, mask: Any, cells: list[int], count: int, told: Progress | None) -> None:
+            """Add the samples of these cells to the sums of pixels, and show the mean, of `count`."""
+            numbers = np.flatnonzero(mask).astype(np.uint32)
+            for at, color in integrator.chosen_pixels(mitsuba_scene, sensor, numbers, cells, told):
+                chosen = numbers[at : at + color.shape[1]]
+                sums.reshape(-1, 3)[chosen] += np.asarray(color).T
+                pixels.reshape(-1, 3)[chosen] = sums.reshape(-1, 3)[chosen] / count
+            too_deep.append(integrator.pixels_too_deep)
+
+        try:
+            with _threads(settings.threads):
+                sums = np.zeros((height, width, 3))
+                if scene_needs(scene, settings).sampled:
+                    all_passes, done = passes(samples, 1), 0
+                    mask = np.ones((height, width), np.bool_)
+                    for cells in all_passes:
+                        told = part_of(progress, done / samples, (done + len(cells)) / samples)
+                        done += len(cells)
+                        add(sums, mask, cells, done, told)
+                        mask = refinement.unsure(sums, len(cells), mask)
+                        if not mask.any():
+                            break
+                else:
+                    signatures = np.zeros((height, width), dtype=np.uint32)
+                    first = share_of_first(samples)
+                    bands = integrator.signed_bands(mitsuba_scene, sensor, part_of(progress, 0, first))
+                    for row, color, words in bands:
+                        rows = np.moveaxis(np.asarray(color), 0, -1).reshape(-1, width, 3)
+                        pixels[row : row + len(rows)] = rows
+                        signatures[row : row + len(rows)] = np.asarray(words).reshape(-1, width)
+                    too_deep.append(integrator.pixels_too_deep)
+                    mask = refinement.unlike(signatures, pixels)
+                    cells = [cell for cells in passes(samples) for cell in cells]
+                    add(sums, mask, cells, samples, part_of(progress, first, 1))
+        except KeyboardInterrupt:
+            raise Interrupted(rendering()) from None
+        except RuntimeError as error:
+            if _comes_from_interrupt(error):
+                raise Interrupted(rendering()) from None
+            raise
         return rendering()
 
     def trace_pixel(self, scene: Scene, settings: Settings, x: int, y: int) -> PixelRecord:
@@ -103,6 +211,42 @@ class MitsubaRenderer:
         return load_description(
             scene_description(scene, settings, self.intersections, self.precision, self.fineness, shapes)
         )
+
+
+def _sums_to_go_on_from(start: Passes | None, pixels: Any) -> Any:
+    """The integrator's sums of what is drawn already, if anything is; its mean is put into `pixels`."""
+    if start is None:
+        return None
+    import mitsuba as mi
+    import numpy as np
+
+    from mitsuba_plugins.integrators.whitted import PassSums
+
+    colors = np.frombuffer(start.colors, np.float64).reshape(-1, 3)
+    np.divide(colors.reshape(pixels.shape), start.notes["samples"], out=pixels, casting="same_kind")
+    too_deep = mi.Bool(np.frombuffer(start.too_deep, np.bool_))
+    return PassSums(start.done, mi.Color3d(np.ascontiguousarray(colors.T)), too_deep)
+
+
+def _whole_passes(sums: Any, shape: tuple[int, ...], passes: list[list[int]], variant: str) -> Passes | None:
+    """What is drawn in whole passes, if any are."""
+    if sums is None or sums.passes == 0:
+        return None
+    import numpy as np
+
+    colors = np.ascontiguousarray(np.asarray(sums.colors).T).reshape(shape)
+    too_deep = np.asarray(sums.too_deep).astype(np.uint8)
+    samples = sum(map(len, passes[: sums.passes]))
+    return Passes(sums.passes, len(passes), colors, too_deep, {"variant": variant, "samples": samples})
+
+
+def _comes_from_interrupt(error: BaseException | None) -> bool:
+    """Whether Ctrl-C is behind an error: Dr.Jit makes another of it while it records a loop."""
+    while error is not None:
+        if isinstance(error, KeyboardInterrupt):
+            return True
+        error = error.__cause__ or error.__context__
+    return False
 
 
 def _check_room() -> None:

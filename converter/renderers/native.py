@@ -4,12 +4,23 @@ import os
 import time
 from collections.abc import Sequence
 from dataclasses import dataclass
+from functools import partial
 from types import ModuleType
-from typing import TYPE_CHECKING, Any, Literal
+from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from converter.analysis.coplanar import with_planes_shared
 from converter.pigments.table import pigment_kind
-from converter.renderers.base import Interrupted, Progress, RendererUnavailable, Rendering, refuse_effects
+from converter.renderers.base import (
+    Interrupted,
+    Passes,
+    Progress,
+    Refinement,
+    RendererUnavailable,
+    Rendering,
+    part_of,
+    refuse_effects,
+    share_of_first,
+)
 from converter.scene.effects import Effect
 from converter.scene.geometry import simplified
 from converter.scene.model import Scene
@@ -22,6 +33,8 @@ if TYPE_CHECKING:
 
 Precision = Literal["float", "double", "long double"]
 Search = Literal["auto", "brute", "bvh"]
+_RAYS = ("primary", "reflected", "transmitted", "shadow")
+"""Names of the tracer's counters of rays."""
 EFFECTS: tuple[Effect, ...] = ("soft shadows", "glossy rays", "depth of field", "motion")
 """What of distributed ray tracing it draws."""
 
@@ -37,11 +50,15 @@ class NativeRenderer:
 
     """
 
+    in_passes: ClassVar[bool] = True
+
     precision: Precision = "double"
     search: Search = "auto"
 
-    def render(self, scene: Scene, settings: Settings, progress: Progress | None = None) -> Rendering:
-        """Draw `scene`.
+    def render(
+        self, scene: Scene, settings: Settings, progress: Progress | None = None, start: Passes | None = None
+    ) -> Rendering:
+        """Draw `scene`, from the passes `start` on.
 
         Raises:
             RendererUnavailable: the native module is not built, or cannot draw an effect that the scene has.
@@ -55,17 +72,74 @@ class NativeRenderer:
         needs = scene_needs(scene, settings)
         native_scene = build_scene(scene, needs)
         image = tracer.Image(settings.width, settings.height)
+        passes = _passes(needs.samples)
+        sums = _pass_sums(tracer, settings, start) if len(passes) > 1 else None
         built = time.perf_counter()
 
         def rendering() -> Rendering:
             seconds = {"build": built - started, "render": time.perf_counter() - built}
             statistics = image.statistics
-            rays = sum(statistics[kind] for kind in ("primary", "reflected", "transmitted", "shadow"))
-            return Rendering(image.pixels, image.width, image.height, seconds, {"rays": rays, **statistics})
+            rays = sum(statistics[kind] for kind in _RAYS)
+            whole = None
+            if sums is not None and sums.passes > 0:
+                whole = Passes(sums.passes, len(passes), sums.colors, sums.too_deep, {"counts": sums.counts})
+            return Rendering(image.pixels, image.width, image.height, seconds, {"rays": rays, **statistics}, whole)
 
         threads = settings.threads or available_cores()
         try:
-            tracer.render(native_scene, image, threads=threads, progress=progress, **self._options(settings, needs))
+            options = self._options(settings, needs) | ({"passes": passes, "sums": sums} if sums is not None else {})
+            tracer.render(native_scene, image, threads=threads, progress=progress, **options)
+        except KeyboardInterrupt:
+            raise Interrupted(rendering()) from None
+        return rendering()
+
+    def unfit_to_adapt(self) -> str | None:
+        """Why it cannot draw adaptively, as `AdaptiveRenderer` has it."""
+        return None
+
+    def render_adaptively(
+        self, scene: Scene, settings: Settings, refinement: Refinement, progress: Progress | None = None
+    ) -> Rendering:
+        """Draw adaptively, as `AdaptiveRenderer` has it."""
+        import numpy as np
+
+        tracer = native_module()
+        started = time.perf_counter()
+        scene = simplified(scene)
+        needs = scene_needs(scene, settings)
+        native_scene = build_scene(scene, needs)
+        image = tracer.Image(settings.width, settings.height)
+        options = self._options(settings, needs) | {"threads": settings.threads or available_cores()}
+        draw = partial(tracer.render, native_scene, image, **options)
+        built = time.perf_counter()
+        statistics: list[dict[str, Any]] = []
+
+        def rendering() -> Rendering:
+            seconds = {"build": built - started, "render": time.perf_counter() - built}
+            every = [*statistics, image.statistics]
+            found = dict(image.statistics) | {kind: sum(each[kind] for each in every) for kind in _RAYS}
+            found |= {name: max(each[name] for each in every) for name in ("deepest", "pixels_too_deep")}
+            rays = {"rays": sum(found[kind] for kind in _RAYS)}
+            return Rendering(image.pixels, image.width, image.height, seconds, rays | found)
+
+        try:
+            if needs.sampled:
+                sums = tracer.PassSums(settings.width, settings.height)
+                all_passes = _passes(needs.samples, 1)
+                mask = np.ones((settings.height, settings.width), np.bool_)
+                for done, cells in enumerate(all_passes):
+                    told = part_of(progress, 0, (done + 1) / len(all_passes))
+                    draw(passes=all_passes[: done + 1], sums=sums, mask=mask.view(np.uint8), progress=told)
+                    mask = refinement.unsure(np.asarray(sums.colors), len(cells), mask)
+                    if not mask.any():
+                        break
+            else:
+                signatures = np.zeros((settings.height, settings.width), np.uint32)
+                first = share_of_first(needs.samples)
+                draw(samples=1, signatures=signatures, progress=part_of(progress, 0, first))
+                statistics.append(image.statistics)
+                mask = refinement.unlike(signatures, np.asarray(image.pixels))
+                draw(mask=mask.view(np.uint8), progress=part_of(progress, first, 1))
         except KeyboardInterrupt:
             raise Interrupted(rendering()) from None
         return rendering()
@@ -101,6 +175,23 @@ class NativeRenderer:
             "precision": self.precision,
             "search": self.search,
         }
+
+
+def _passes(samples: int, in_one: int | None = None) -> list[list[int]]:
+    from native_tracer.passes import passes  # late: it may not be built
+
+    return passes(samples) if in_one is None else passes(samples, in_one)
+
+
+def _pass_sums(tracer: ModuleType, settings: Settings, start: Passes | None) -> Any:
+    """The tracer's sums of passes: none yet, or those to start from."""
+    sums = tracer.PassSums(settings.width, settings.height)
+    if start is not None:
+        sums.passes = start.done
+        for target, source in ((sums.colors, start.colors), (sums.too_deep, start.too_deep)):
+            target.cast("B")[:] = memoryview(source).cast("B")
+        sums.counts = start.notes["counts"]
+    return sums
 
 
 def native_module() -> ModuleType:

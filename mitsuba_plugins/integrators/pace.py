@@ -26,6 +26,8 @@ SHALLOW = 64
 """Bounces. Where every ray may take more, the least and the first launch have fewer rays in proportion."""
 MOST_PIXELS = {False: 1 << 20, True: 1 << 25}
 """Of a band, likewise: memory grows with them and not with the number of samples."""
+STAGE = 4
+"""Launches that passes over the whole picture take together, at least: fewer would leave little for each band."""
 MOST = 1 << 28
 """Primary rays of a launch."""
 
@@ -40,6 +42,7 @@ class Pace:
         self._rays = LEAST_BRANCHING if branching else int(share * FIRST[on_gpu])
         self._most_pixels = MOST_PIXELS[on_gpu]
         self._recorded = 0.0
+        self._measured = False
 
     def rows(self, width: int) -> int:
         """Rows of the next band, of a picture of that width. They do not depend on the number of samples."""
@@ -49,6 +52,10 @@ class Pace:
         """Samples of each pixel that the next launch draws."""
         return max(1, self._rays // pixels)
 
+    def passes(self, rays: int) -> int:
+        """Passes, of so many primary rays each, that are drawn together next."""
+        return max(1, STAGE * self._rays // rays) if self._measured else 1
+
     @contextmanager
     def launch(self, rays: int) -> Iterator[None]:
         """Measure a launch of so many primary rays, within which `recorded` is called before it is run."""
@@ -56,6 +63,7 @@ class Pace:
         yield
         recording, running = self._recorded - started, time.perf_counter() - self._recorded
         fitting = rays * max(SECONDS, recording) / max(running, 1e-3)
+        self._measured = True
         self._rays = int(min(max(min(fitting, self._rays * GROWTH), self._least), MOST))
 
     def recorded(self) -> None:

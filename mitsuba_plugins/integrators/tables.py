@@ -54,6 +54,7 @@ class Materials:
         self._finish = column(mi.UInt32, [finish_row[id(bsdf)] for bsdf in bsdfs])
         self._texture = column(mi.UInt32, [texture_row[id(bsdf.pigment)] for bsdf in bsdfs])
         self._colors = [_color_function(texture) for texture in textures.values()]
+        self._cells = [_cell_function(texture) for texture in textures.values()]
         self.has_edges = any(hasattr(t, "color_at") and t.is_spatially_varying() for t in textures.values())
         """Whether a pigment's colour changes from one point to the next, so that it matters how far points are off."""
         self.spread = any(bsdf.cone[0] > 0 for bsdf in finishes.values())
@@ -77,6 +78,19 @@ class Materials:
             return self._types.Color3(self._colors[0](p, errors))
         texture = dr.gather(mi.UInt32, self._texture, index, active)
         return self._types.Color3(dr.switch(texture, self._colors, p, errors))
+
+    def cell(self, index: Any, p: Any, errors: Any, active: Any) -> Any:
+        """A word (UInt32) for the piece of an object's pigment at a position, such as a checker's cube."""
+        if not self._cells:
+            return mi.UInt32(0)
+        if len(self._cells) == 1:
+            return self._cells[0](p, errors)
+        texture = dr.gather(mi.UInt32, self._texture, index, active)
+        return dr.switch(texture, self._cells, p, errors)
+
+
+def _cell_function(texture: Any) -> Any:
+    return getattr(texture, "cell_at", lambda p, _: dr.zeros(mi.UInt32, dr.width(p)))
 
 
 def _color_function(texture: Any) -> Any:

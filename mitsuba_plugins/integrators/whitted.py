@@ -2,7 +2,7 @@
 
 import math
 from contextlib import contextmanager
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any
 
 import drjit as dr
@@ -12,6 +12,7 @@ import numpy as np
 from mitsuba_plugins import sampler as samples
 from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.integrators.pace import Pace
+from mitsuba_plugins.integrators.signature import hit_word, shadow_word
 from mitsuba_plugins.integrators.stack import RayStack
 from mitsuba_plugins.integrators.tables import Finish, Illumination, Lights, Materials
 from mitsuba_plugins.intersection.analytic import AnalyticSurfaces
@@ -24,6 +25,7 @@ from mitsuba_plugins.intersection.mesh import MeshSurfaces
 from mitsuba_plugins.intersection.primitives import Primitives
 from mitsuba_plugins.intersection.rays import (
     NOTHING,
+    UPRIGHT,
     Hit,
     Ray,
     lanes,
@@ -45,6 +47,7 @@ from mitsuba_plugins.intersection.rounding import (
     most_blur,
     most_camera_blur,
 )
+from native_tracer.passes import passes
 
 INTERSECTIONS = ("analytic", "bvh", "mesh", "offset", "ulp")
 """Ways to find what a ray hits."""
@@ -175,7 +178,9 @@ class Whitted(mi.SamplingIntegrator):
         self.points = props.get("points", "stratified")
         if self.points not in ("stratified", "independent"):
             raise ValueError(f"whitted: points is stratified or independent, not '{self.points}'")
+        self.signing = False
         self.pixels_too_deep = 0
+        self.sums: PassSums | None = None
         self._tracer: Any = None
         self._eye_contact: EyeContact | None = None
 
@@ -187,14 +192,15 @@ class Whitted(mi.SamplingIntegrator):
     # ------------------------------------------------------------------ preparation
 
     @contextmanager
-    def prepared(self, scene, sensor=None):
+    def prepared(self, scene, sensor=None, signing=False):
         """Lay out what the kernel reads: surfaces, finishes, pigments, lights, and what the eye of a `pinhole` lies on;
-        the methods below need it.
+        the methods below need it. With `signing`, pixels get signatures.
 
         Let go of at the end: it may hold the scene, which holds this integrator, and such circles are never freed.
         """
         primitives = Primitives(self.types, self.surfaces)
         self.first_primitives = primitives.first
+        self._pieces = column(mi.UInt32, primitives.pieces) if signing else None
         # These, too, are read anew each time: they are what mitsuba.traverse lets a user change.
         self._materials = Materials(self.types, [self._bsdfs.by_name[surface.material] for surface in self.surfaces])
         self._lights = Lights(self.types, scene.emitters())
@@ -202,7 +208,9 @@ class Whitted(mi.SamplingIntegrator):
         self._soft_shadows = self.shadows and bool(self._lights.radii.any())
         self._spreads = self._materials.spread and (self.reflection or self.refraction)
         self._has_lens = getattr(sensor, "has_lens", False)
-        self.sampled = self.moves or self._soft_shadows or self._spreads or self._has_lens
+        self.signing = signing
+        # Where signatures are made, rays have paths.
+        self.sampled = self.moves or self._soft_shadows or self._spreads or self._has_lens or signing
         contacts = Contacts(self.surfaces)
         self._light_contacts = LightContacts(self.types, contacts, self._lights.positions, self._lights.radii)
         on_something = hasattr(sensor, "eye") and not self._has_lens
@@ -317,8 +325,9 @@ class Whitted(mi.SamplingIntegrator):
 
     @dr.syntax
     def trace(self, ray: Ray, sample, active):
-        """Radiance (Color3) along rays: the whole tree below each, in one kernel; and, if `depth_limited`, whether
-        the limit dropped a ray that the cut-off would have kept, else False. Each is the primary ray of a `sample`.
+        """Radiance (Color3) along rays: the whole tree below each, in one kernel; if `depth_limited`, whether the limit
+        dropped a ray that the cut-off would have kept, else False; and if `signing`, the signature (UInt32), else 0.
+        Each is the primary ray of a `sample`.
 
         Where a surface sends on two rays, the heavier one waits on a stack in local memory.
         """
@@ -330,13 +339,16 @@ class Whitted(mi.SamplingIntegrator):
         ray = self.timed(ray, sample)
         active = active & lanes(width)
         too_deep = dr.zeros(mi.Bool, width) if self.depth_limited else False
+        signature = dr.zeros(mi.UInt32, width) if self.signing else mi.UInt32(0)
         waiting = dr.zeros(mi.UInt32, width)
         stack = RayStack(self.types, self.stack_size if self.branching else 0, self.sampled)
         path = dr.full(mi.UInt32, samples.PRIMARY_PATH, width) if self.sampled else mi.UInt32(0)
         while active:
             hit = self.closest(ray, active)
             finish, color = self.material(ray, hit)
-            local = self.local_radiance(ray, hit, finish, color, sample, path)
+            local, shadows = self.local_radiance(ray, hit, finish, color, sample, path)
+            if dr.hint(self.signing, mode="scalar"):
+                signature += dr.select(hit.valid, self._hit_word(ray, hit, path) + shadows, 0)
             radiance += weight * dr.select(hit.valid, local, self.types.Color3(self.background))
 
             depth += 1
@@ -387,7 +399,7 @@ class Whitted(mi.SamplingIntegrator):
                 ray = self.transmitted(ray, hit, finish, sample, path, refracts)[0]
                 if dr.hint(self.sampled, mode="scalar"):
                     path = 2 * path + 1
-        return radiance, too_deep
+        return radiance, too_deep, signature
 
     def followed(self, weight, depth, hit: Hit, finish: Finish):
         """Weight of the mirrored ray of a hit, and where it is followed; the same of the refracted one.
@@ -407,16 +419,21 @@ class Whitted(mi.SamplingIntegrator):
 
     @dr.syntax
     def local_radiance(self, ray: Ray, hit: Hit, finish: Finish, color, sample, path):
-        """What a surface sends back along a ray by itself (Color3): ambient light, and what the lights add."""
+        """What a surface sends back along a ray by itself (Color3): ambient light, and what the lights add; and, if
+        `signing`, a word (UInt32) for the shadows that it lies in, else 0.
+        """
         radiance = finish.ka * self.types.Color3(self.ambient) * color
+        shadows = dr.zeros(mi.UInt32, dr.width(ray.d)) if self.signing else mi.UInt32(0)
         if dr.hint(self.shadows, mode="scalar"):
             lit = hit.valid & (finish.kd + finish.ks > 0)
             light = dr.zeros(mi.UInt32, dr.width(ray.d))
             while lit & (light < self.light_count):
                 illumination = self.light(light, ray, hit, finish, color, lit, sample, path)
                 radiance += illumination.diffuse + illumination.specular
+                if dr.hint(self.signing, mode="scalar"):
+                    shadows += dr.select(illumination.blocker != NOTHING, shadow_word(path, light), 0)
                 light += 1
-        return radiance
+        return radiance, shadows
 
     # ------------------------------------------------------------------ pictures
 
@@ -426,7 +443,7 @@ class Whitted(mi.SamplingIntegrator):
             # Which sample of which pixel a ray is, nobody tells here.
             key = mi.UInt32(mi.Float64(sampler.next_1d()) * 2.0**32) if self.sampled else mi.UInt32(0)
             sample = self.name_sample(key, mi.UInt32(0))
-            color, _ = self.trace(start_ray(self.types, ray.o, unit(mi.Vector3d(ray.d))), sample, active)
+            color, _, _ = self.trace(start_ray(self.types, ray.o, unit(mi.Vector3d(ray.d))), sample, active)
         return mi.Color3f(color), mi.Bool(active), []
 
     def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
@@ -454,48 +471,178 @@ class Whitted(mi.SamplingIntegrator):
             the finished share of the picture.
 
         """
-        offsets = self.sample_offsets(spp or sensor.sampler().sample_count())
+        cells = [cell for cells in passes(spp or sensor.sampler().sample_count()) for cell in cells]
         with self.prepared(scene, sensor), dr.suspend_grad():
-            yield from self._bands(sensor, offsets, progress)
+            pace = Pace(self.branching, self.max_depth[0])
+            self.pixels_too_deep = 0
+            for first, color, too_deep in self._stage(
+                sensor, pace, self._tables(cells, len(cells)), 0, len(cells), None, progress
+            ):
+                if self.depth_limited:
+                    self.pixels_too_deep += dr.count(too_deep)[0]
+                yield first, mi.Color3f(quotient(color, len(cells)))
 
-    def _bands(self, sensor, offsets, progress):
+    def bands_by_passes(self, scene, sensor, start=None, progress=None):
+        """Draw a picture in passes of samples, see :mod:`native_tracer.passes`, and each in bands: pictures that take
+        long, for all of it has some samples soon. Short passes are drawn together.
+
+        Yields:
+            The first row of a band within the film's crop window, and its pixels' colours (Color3f) with what is drawn
+            so far. What is left in ``sums`` (PassSums) has whole passes only, beginning with those of `start`.
+
+        """
+        all_passes = passes(sensor.sampler().sample_count())
+        cells = [cell for cells in all_passes for cell in cells]
         width, height = sensor.film().crop_size()
-        table = column(mi.Float64, offsets)
-        pace = Pace(self.branching, self.max_depth[0])
-        self.pixels_too_deep = 0
+        with self.prepared(scene, sensor), dr.suspend_grad():
+            pace = Pace(self.branching, self.max_depth[0])
+            tables = self._tables(cells, len(cells))
+            self.sums = start or PassSums(0, dr.zeros(mi.Color3d, width * height), dr.zeros(mi.Bool, width * height))
+            while self.sums.passes < len(all_passes):
+                size = len(all_passes[0])
+                more = min(pace.passes(width * height * size), len(all_passes) - self.sums.passes)
+                begin, end = self.sums.passes * size, (self.sums.passes + more) * size
+                bands = []
+                sums = self.sums if begin else None
+                for first, color, too_deep in self._stage(sensor, pace, tables, begin, end, sums, progress):
+                    bands.append((*color, too_deep if self.depth_limited else dr.zeros(mi.Bool, dr.width(color))))
+                    yield first, mi.Color3f(quotient(color, end))
+                red, green, blue, too_deep = (dr.concat(parts) for parts in zip(*bands, strict=True))
+                colors = mi.Color3d(red, green, blue)
+                dr.eval(colors, too_deep)
+                self.sums = PassSums(self.sums.passes + more, colors, too_deep)
+                self.pixels_too_deep = dr.count(too_deep)[0]
+
+    # ------------------------------------------------------------------ some pixels more often than others
+
+    def signed_bands(self, scene, sensor, progress=None):
+        """Draw a picture of one sample a pixel in bands of rows, with signatures, see :mod:`.signature`.
+
+        Yields:
+            The first row of a band within the film's crop window, and its pixels' colours (Color3f) and signatures
+            (UInt32).
+
+        """
+        width, height = sensor.film().crop_size()
+        with self.prepared(scene, sensor, signing=True), dr.suspend_grad():
+            pace = Pace(self.branching, self.max_depth[0])
+            self.pixels_too_deep = 0
+            offset = column(mi.Float64, self.sample_offsets(1))
+            first = 0
+            while first < height:
+                rows = min(height - first, pace.rows(width))
+                with pace.launch(rows * width):
+                    corner = _corners(sensor.film(), _rows(sensor.film(), first, rows * width))
+                    position = corner + dr.gather(mi.Point2d, offset, mi.UInt32(0))
+                    number = samples.Sample(mi.UInt32(0), mi.UInt32(0))
+                    color, too_deep, signature = self.trace(self.primary_ray(sensor, position, number), number, True)
+                    pace.recorded()
+                    dr.eval(color, too_deep, signature)
+                    dr.sync_thread()
+                if self.depth_limited:
+                    self.pixels_too_deep += dr.count(too_deep)[0]
+                yield first, mi.Color3f(color), signature
+                first += rows
+                if progress is not None:
+                    progress(first / height)
+
+    def chosen_pixels(self, scene, sensor, numbers, cells, progress=None):
+        """Draw some pixels, with the samples in some cells of the grid. The `numbers` of the pixels (NumPy, uint32)
+        count row by row within the film's crop window.
+
+        Yields:
+            The index of a pixel among them, and the sums of the samples' colours (Color3d) from it on, for as many as
+            are drawn at once.
+
+        """
+        with self.prepared(scene, sensor), dr.suspend_grad():
+            pace = Pace(self.branching, self.max_depth[0])
+            tables = self._tables(cells, sensor.sampler().sample_count())
+            self.pixels_too_deep = 0
+            first = 0
+            while first < len(numbers):
+                pixel = mi.UInt32(numbers[first : first + pace.rows(1)])
+                count = dr.width(pixel)
+                color = dr.opaque(mi.Color3d, 0, count)
+                too_deep = dr.opaque(mi.Bool, False, count) if self.depth_limited else False
+                done = 0
+                while done < len(cells):
+                    more = min(len(cells) - done, pace.samples(count))
+                    with pace.launch(count * more):
+                        color, too_deep = self._add_samples(sensor, color, too_deep, pixel, tables, done, done + more)
+                        pace.recorded()
+                        dr.eval(color, too_deep)
+                        dr.sync_thread()
+                    done += more
+                    if progress is not None:
+                        progress((first + count * done / len(cells)) / len(numbers))
+                if self.depth_limited:
+                    self.pixels_too_deep += dr.count(too_deep)[0]
+                yield first, color
+                first += count
+
+    def _hit_word(self, ray: Ray, hit: Hit, path):
+        """What the hit of a ray of that path adds to a signature."""
+        piece = dr.gather(mi.UInt32, self._pieces, hit.primitive & UPRIGHT, hit.valid)
+        cell = self._materials.cell(hit.object, hit.p, self._errors(ray, hit), hit.valid)
+        inside = dr.select(hit.inside, mi.UInt32(1), 0)
+        return hit_word(path, hit.object, piece, inside, cell)
+
+    def _tables(self, cells, spp):
+        """Where some of `spp` samples of a pixel lie, in the order in which they are drawn, and their numbers."""
+        offsets = self.sample_offsets(spp)
+        return column(mi.Float64, [offsets[cell] for cell in cells]), mi.UInt32(cells)
+
+    def _stage(self, sensor, pace, tables, begin, end, sums, progress):
+        """Draw samples from `begin` to `end` of all pixels, in bands of rows, and add them to what is in `sums`
+        (PassSums), if given.
+
+        Yields:
+            The first row of a finished band, the sums of its pixels' colours (Color3d), and where the depth limit
+            dropped a ray (Bool), if it is limited.
+
+        """
+        width, height = sensor.film().crop_size()
+        count = dr.width(tables[1])
         first = 0
         while first < height:
             rows = min(height - first, pace.rows(width))
-            # Opaque, so that the first launch needs no kernel of its own.
-            color = dr.opaque(mi.Color3d, 0, rows * width)
-            too_deep = dr.opaque(mi.Bool, False, rows * width) if self.depth_limited else False
-            done = 0
-            while done < len(offsets):
-                count = min(len(offsets) - done, pace.samples(rows * width))
-                with pace.launch(rows * width * count):
-                    color, too_deep = self._add_samples(sensor, color, too_deep, first, table, done, done + count)
+            if sums is None:
+                # Opaque, so that the first launch needs no kernel of its own.
+                color = dr.opaque(mi.Color3d, 0, rows * width)
+                too_deep = dr.opaque(mi.Bool, False, rows * width) if self.depth_limited else False
+            else:
+                pixel = _rows(sensor.film(), first, rows * width)
+                color = dr.gather(mi.Color3d, sums.colors, pixel)
+                too_deep = dr.gather(mi.Bool, sums.too_deep, pixel) if self.depth_limited else False
+                dr.eval(color, too_deep)
+            done = begin
+            while done < end:
+                more = min(end - done, pace.samples(rows * width))
+                with pace.launch(rows * width * more):
+                    pixel = _rows(sensor.film(), first, rows * width)
+                    color, too_deep = self._add_samples(sensor, color, too_deep, pixel, tables, done, done + more)
                     pace.recorded()
                     dr.eval(color, too_deep)
                     dr.sync_thread()
-                done += count
+                done += more
                 if progress is not None:
-                    progress((first + rows * done / len(offsets)) / height)
-            if self.depth_limited:
-                self.pixels_too_deep += dr.count(too_deep)[0]
-            yield first, mi.Color3f(quotient(color, len(offsets)))
+                    progress((begin + ((end - begin) * first + rows * (done - begin)) / height) / count)
+            yield first, color, too_deep
             first += rows
 
     @dr.syntax
-    def _add_samples(self, sensor, color, too_deep, first, offsets, sample, end):
-        """What `trace` finds for the pixels of whole rows from row `first` on, with some more samples added."""
+    def _add_samples(self, sensor, color, too_deep, pixel, tables, sample, end):
+        """What `trace` finds for pixels, by their numbers (UInt32), with some more samples added."""
         width = dr.width(color)
-        corner = _corners(sensor.film(), first, width)
+        corner = _corners(sensor.film(), pixel)
         key = self.pixel_key(corner)
+        offsets, numbers = tables
         if dr.hint(dr.width(offsets) == 2, mode="scalar"):
             # One sample needs no loop, which takes twice as long to record.
             position = corner + dr.gather(mi.Point2d, offsets, mi.UInt32(0))
             number = self.name_sample(key, mi.UInt32(0))
-            more, deep = self.trace(self.primary_ray(sensor, position, number), number, True)
+            more, deep, _ = self.trace(self.primary_ray(sensor, position, number), number, True)
             color += more
             too_deep |= deep
         else:
@@ -503,8 +650,8 @@ class Whitted(mi.SamplingIntegrator):
             sample, end = dr.opaque(mi.UInt32, sample, width), dr.opaque(mi.UInt32, end)
             while sample < end:
                 position = corner + dr.gather(mi.Point2d, offsets, sample)
-                number = self.name_sample(key, sample)
-                more, deep = self.trace(self.primary_ray(sensor, position, number), number, True)
+                number = self.name_sample(key, dr.gather(mi.UInt32, numbers, sample) if self.sampled else mi.UInt32(0))
+                more, deep, _ = self.trace(self.primary_ray(sensor, position, number), number, True)
                 color += more
                 too_deep |= deep
                 sample += 1
@@ -570,6 +717,17 @@ class Whitted(mi.SamplingIntegrator):
         return f"Whitted[{len(self.surfaces)} surfaces, {way}, max_depth={self.max_depth}]"
 
 
+@dataclass(frozen=True)
+class PassSums:
+    """What is drawn of a picture in whole passes: their number, the sums of the samples' colours (Color3d), and the
+    pixels in which the depth limit dropped a ray (Bool).
+    """
+
+    passes: int
+    colors: Any
+    too_deep: Any
+
+
 class Bsdfs:
     """The nested BSDFs, in an object of a class that Dr.Jit does not know.
 
@@ -610,13 +768,16 @@ def _materials(props, surfaces):
     return bsdfs
 
 
-def _corners(film, first, count):
-    """Top left corners (Point2d) of `count` pixels from row `first` of the film's crop window on."""
-    # Opaque, so that pictures of all sizes share one kernel.
-    first, columns = dr.opaque(mi.UInt32, first), dr.opaque(mi.UInt32, film.crop_size().x)
-    pixel = dr.arange(mi.UInt32, count)
+def _rows(film, first, count):
+    """The numbers (UInt32) of `count` pixels from row `first` of the film's crop window on."""
+    return dr.arange(mi.UInt32, count) + dr.opaque(mi.UInt32, first * film.crop_size().x)
+
+
+def _corners(film, pixel):
+    """Top left corners (Point2d) of pixels, by their numbers in the film's crop window, row by row."""
+    columns = dr.opaque(mi.UInt32, film.crop_size().x)  # opaque, so that pictures of all sizes share one kernel
     row = pixel // columns
-    return mi.Point2d(pixel - row * columns, row + first) + mi.Point2d(film.crop_offset())
+    return mi.Point2d(pixel - row * columns, row) + mi.Point2d(film.crop_offset())
 
 
 def _block(bands, film):

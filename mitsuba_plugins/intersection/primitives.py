@@ -28,8 +28,11 @@ class Primitives:
         kinds: list[ShapeKind] = []
         self.first = []
         """The index of each object's first primitive."""
+        self.pieces: list[int] = []
+        """What number each primitive has among the smooth pieces of its object."""
         for surface in surfaces:
             self.first.append(len(rows))
+            self.pieces += _pieces(surface)
             rows.extend(surface.rows)
             kinds.extend(kind for kind, shape in surface.shapes for _ in shape.rows)
         self.types = types
@@ -130,6 +133,16 @@ class Primitives:
         if self.any_csg:
             result.n = dr.select(primitive == row, result.n, -result.n)
         return result
+
+
+def _pieces(surface: Surface) -> list[int]:
+    """The number of the piece that each row of an object belongs to: some kinds have several rows a piece."""
+    result, first = [], 0
+    for _, shape in surface.shapes:
+        rows, count = len(shape.rows), len(shape.given)
+        result += [first + row * count // rows for row in range(rows)]
+        first += count
+    return result
 
 
 def _by_kind(kinds: list[Any], column: Any, index: Any, active: Any, answer: Callable[[Any, Any], Any]) -> Any:

@@ -5,6 +5,7 @@ import mitsuba as mi
 
 from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.intersection.rounding import epsilon
+from mitsuba_plugins.sampler import combine
 
 
 class SolidChecker(mi.Texture):
@@ -40,12 +41,22 @@ class SolidChecker(mi.Texture):
 
         A coordinate that is a whole number of edges, but for its error, is that number.
         """
-        p = mi.Vector3d(p)
-        p = p + errors + dr.abs(p) * (2 * epsilon(p))
-        cell = dr.floor(quotient(p, self.size))
+        cell = self._cube(p, errors)
         # The parity of a sum is found without the sum: far from the origin it would overflow an integer.
         half = (cell.x + cell.y + cell.z) * 0.5
         return dr.select(half == dr.floor(half), self.first, self.second)
+
+    def cell_at(self, p, errors=0):
+        """A word (UInt32) for the cube at a position: others near it have others."""
+        cell = self._cube(p, errors)
+        rest = cell - dr.floor(cell * 2.0**-22) * 2.0**22
+        x, y, z = (mi.UInt32(dr.fmax(number, 0)) for number in rest)  # 0 where it is no number
+        return combine(combine(x, y), z)
+
+    def _cube(self, p, errors):
+        p = mi.Vector3d(p)
+        p = p + errors + dr.abs(p) * (2 * epsilon(p))
+        return dr.floor(quotient(p, self.size))
 
     def eval(self, si, active=True):
         return mi.Color3f(self.color_at(si.p)) & active

@@ -4,12 +4,14 @@
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
 #include <nanobind/stl/string.h>
+#include <nanobind/stl/vector.h>
 
 #include <algorithm>
 #include <array>
 #include <cmath>
 #include <cstddef>
 #include <cstdint>
+#include <memory>
 #include <optional>
 #include <stdexcept>
 #include <string>
@@ -62,13 +64,54 @@ RenderSettings settings_of(int width, int height, int samples, std::uint32_t see
     return settings;
 }
 
+using Mask = nb::ndarray<const std::uint8_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+using Signatures = nb::ndarray<std::uint32_t, nb::ndim<2>, nb::c_contig, nb::device::cpu>;
+
+void check_passes(const std::vector<Places>& passes, int samples) {
+    std::vector<bool> found(static_cast<std::size_t>(samples));
+    for (const Places& places : passes) {
+        for (const int place : places) {
+            if (place < 0 || place >= samples || found[static_cast<std::size_t>(place)]) {
+                throw std::invalid_argument("passes name each sample once at most");
+            }
+            found[static_cast<std::size_t>(place)] = true;
+        }
+        if (places.empty()) {
+            throw std::invalid_argument("a pass has a sample");
+        }
+    }
+}
+
+nb::dict dict_of(const RayCounts& counts) {
+    nb::dict result;
+    result["primary"] = counts.primary;
+    result["reflected"] = counts.reflected;
+    result["transmitted"] = counts.transmitted;
+    result["shadow"] = counts.shadow;
+    result["deepest"] = counts.deepest;
+    result["pixels_too_deep"] = counts.pixels_too_deep;
+    return result;
+}
+
 void render_image(const SceneDescription& scene, Image& image, int samples, std::uint32_t seed, bool independent,
                   bool corner, bool blinn, double cutoff, int max_depth, const std::string& precision,
-                  const std::string& search, int threads, nb::object progress, const std::string& instructions) {
+                  const std::string& search, int threads, nb::object progress, const std::string& instructions,
+                  const std::vector<Places>& passes, PassSums* sums, std::optional<Mask> mask,
+                  std::optional<Signatures> signatures) {
     const RenderSettings settings = settings_of(image.width(), image.height(), samples, seed, independent, corner,
                                                 blinn, cutoff, max_depth, precision, search);
     if (!progress.is_none() && !PyCallable_Check(progress.ptr())) {
         throw nb::type_error("progress must be callable");
+    }
+    if (sums != nullptr) {
+        check_passes(passes, samples);
+    }
+    const auto fits = [&](const auto& words) {
+        return words.shape(0) == static_cast<std::size_t>(image.height()) &&
+               words.shape(1) == static_cast<std::size_t>(image.width());
+    };
+    if ((mask && !fits(*mask)) || (signatures && !fits(*signatures))) {
+        throw std::invalid_argument("a mask and signatures have the image's height and width");
     }
     const auto watch = [&](double done) {
         const nb::gil_scoped_acquire lock;
@@ -80,7 +123,16 @@ void render_image(const SceneDescription& scene, Image& image, int samples, std:
         }
     };
     const nb::gil_scoped_release unlocked;
-    render(*make_kernel(scene, settings, instructions), image, threads, watch);
+    const std::unique_ptr<Kernel> kernel = make_kernel(scene, settings, instructions);
+    if (sums != nullptr) {
+        render(*kernel, image, *sums, passes, mask ? mask->data() : nullptr, threads, watch);
+    } else if (mask) {
+        render_masked(*kernel, image, mask->data(), threads, watch);
+    } else if (signatures) {
+        render_signed(*kernel, image, signatures->data(), threads, watch);
+    } else {
+        render(*kernel, image, threads, watch);
+    }
 }
 
 // ---- The ray tree of a pixel --------------------------------------------------------------------------------------
@@ -263,25 +315,56 @@ void bind_render(nb::module_& module) {
         .def_prop_ro(
             "statistics",
             [](const Image& image) {
-                nb::dict result;
-                result["primary"] = image.counts.primary;
-                result["reflected"] = image.counts.reflected;
-                result["transmitted"] = image.counts.transmitted;
-                result["shadow"] = image.counts.shadow;
-                result["deepest"] = image.counts.deepest;
-                result["pixels_too_deep"] = image.counts.pixels_too_deep;
+                nb::dict result = dict_of(image.counts);
                 result["threads"] = image.threads;
                 result["search"] = image.by_tree ? "bvh" : "brute";
                 return result;
             },
             "Rays of the last rendering by kind, its deepest bounce, its threads, and how it searched.");
 
-    module.def("render", &render_image, "scene"_a, "image"_a, nb::kw_only(), "samples"_a = 1, "seed"_a = 0,
-               "independent"_a = false, "corner"_a = true, "blinn"_a = false, "cutoff"_a, "max_depth"_a,
-               "precision"_a = "double", "search"_a = "auto", "threads"_a = 0, "progress"_a = nb::none(),
-               "instructions"_a = "",
-               "Draw `scene` into `image`. `progress` is called about 20 times a second with the finished share; what\n"
-               "it raises, and Ctrl-C, stop the rendering, and what is finished stays in the image.");
+    nb::class_<PassSums>(module, "PassSums", "Sums of the samples of whole passes: what drawing may go on from.")
+        .def(nb::init<int, int>(), "width"_a, "height"_a)
+        .def_rw("passes", &PassSums::passes, "How many passes are in the sums.")
+        .def_prop_ro(
+            "colors",
+            [](nb::handle self) {
+                auto& sums = nb::cast<PassSums&>(self);
+                const std::size_t shape[] = {static_cast<std::size_t>(sums.height()),
+                                             static_cast<std::size_t>(sums.width()), 3};
+                return nb::ndarray<nb::memview, double>(sums.colors(), 3, shape, self);
+            },
+            nb::rv_policy::reference, "A memoryview of height x width x 3 float64, not a copy.")
+        .def_prop_ro(
+            "too_deep",
+            [](nb::handle self) {
+                auto& sums = nb::cast<PassSums&>(self);
+                const std::size_t shape[] = {static_cast<std::size_t>(sums.height()),
+                                             static_cast<std::size_t>(sums.width())};
+                return nb::ndarray<nb::memview, std::uint8_t>(sums.too_deep(), 2, shape, self);
+            },
+            nb::rv_policy::reference, "A memoryview of height x width bytes: 1 where the depth limit dropped a ray.")
+        .def_prop_rw(
+            "counts", [](const PassSums& sums) { return dict_of(sums.counts); },
+            [](PassSums& sums, const nb::dict& counts) {
+                const auto read = [&](const char* name) { return nb::cast<std::uint64_t>(counts[name]); };
+                sums.counts = {read("primary"), read("reflected"),       read("transmitted"),
+                               read("shadow"),  read("pixels_too_deep"), nb::cast<int>(counts["deepest"])};
+            },
+            "Rays of the passes by kind, and their deepest bounce.");
+
+    module.def(
+        "render", &render_image, "scene"_a, "image"_a, nb::kw_only(), "samples"_a = 1, "seed"_a = 0,
+        "independent"_a = false, "corner"_a = true, "blinn"_a = false, "cutoff"_a, "max_depth"_a,
+        "precision"_a = "double", "search"_a = "auto", "threads"_a = 0, "progress"_a = nb::none(),
+        "instructions"_a = "", "passes"_a = nb::list(), "sums"_a = nb::none(), "mask"_a = nb::none(),
+        "signatures"_a = nb::none(),
+        "Draw `scene` into `image`. `progress` is called about 20 times a second with the finished share; what\n"
+        "it raises, and Ctrl-C, stop the rendering, and what is finished stays in the image.\n"
+        "With `sums`, of the image's size, it is drawn in `passes`, which name each sample once at most; passes that "
+        "are\n"
+        "in the sums are not drawn again, and those that become whole are added. With a `mask` of bytes, height x\n"
+        "width, only the pixels are drawn that are not 0 there. `signatures`, of uint32, get a word each for what is\n"
+        "decided along the pixel's rays.");
     module.def("trace_pixel", &trace_pixel, "scene"_a, "width"_a, "height"_a, "x"_a, "y"_a, nb::kw_only(),
                "samples"_a = 1, "seed"_a = 0, "independent"_a = false, "corner"_a = true, "blinn"_a = false, "cutoff"_a,
                "max_depth"_a, "precision"_a = "double", "search"_a = "auto",

@@ -3,8 +3,10 @@
 #pragma once
 
 #include <atomic>
+#include <cstdint>
 #include <memory>
 #include <string_view>
+#include <vector>
 
 #include "search/search.h"
 #include "tracing/description.h"
@@ -20,6 +22,17 @@ struct Tile {
 // Wide, so that registers full of neighbouring pixels fit in, and not too small, for its last rays leave lanes empty.
 inline constexpr int tile_width = 64, tile_height = 32;
 
+// Where the rays of a pixel pass: places in the grid, row by row, in the order in which they are traced.
+using Places = std::vector<int>;
+
+// The sums of a picture's samples, height x width x 3 each, and which of its pixels lack rays for the depth limit.
+struct SampleSums {
+    const double* before;
+    double* after;
+    unsigned char* too_deep;  // a byte a pixel, set to 1 where it is so
+    int samples;              // of each pixel, in `after`
+};
+
 class Kernel {
  public:
     virtual ~Kernel();
@@ -28,6 +41,19 @@ class Kernel {
     // untouched, if it was stopped. May be called from several threads at once.
     virtual bool trace_tile(const Tile& tile, float* picture, RayCounts& counts,
                             const std::atomic<bool>& stop) const = 0;
+
+    // The same for those pixels only where `mask`, height x width of the picture, is not 0.
+    virtual bool trace_masked(const Tile& tile, const unsigned char* mask, float* picture, RayCounts& counts,
+                              const std::atomic<bool>& stop) const = 0;
+
+    // The same as trace_tile, and the pixels' signatures, height x width of the picture; see signer.h.
+    virtual bool sign_tile(const Tile& tile, float* picture, std::uint32_t* signatures, RayCounts& counts,
+                           const std::atomic<bool>& stop) const = 0;
+
+    // The same with some of the samples only: their sums are added to those before, and the picture has the mean of all
+    // so far. With a mask, sums and colours of other pixels stay what they are.
+    virtual bool add_samples(const Tile& tile, const Places& places, const unsigned char* mask, const SampleSums& sums,
+                             float* picture, RayCounts& counts, const std::atomic<bool>& stop) const = 0;
 
     // Whether the objects are searched by a tree.
     virtual bool uses_tree() const = 0;

@@ -1,5 +1,5 @@
-// Who watches the tracer: nobody while a picture is rendered, and a recorder when one pixel is to be explained, see
-// recorder.h.
+// Who watches the tracer: nobody while a picture is rendered, a recorder when one pixel is to be explained, see
+// recorder.h, and a signer where pixels are compared with their neighbours, see signer.h.
 //
 // The tracer is a template over its observer, so that both run the same code, and watching costs a rendering nothing.
 
@@ -14,6 +14,8 @@ struct Unobserved {
 
     template <typename... Arguments>
     void primary(Arguments&...) {}
+    template <typename... Arguments>
+    void pigment(const Arguments&...) {}
     template <typename... Arguments>
     void surface(const Arguments&...) {}
     template <typename... Arguments>

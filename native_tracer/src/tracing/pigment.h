@@ -3,10 +3,12 @@
 #pragma once
 
 #include <cmath>
+#include <cstdint>
 #include <variant>
 
 #include "tracing/camera.h"
 #include "tracing/rounding.h"
+#include "tracing/sampler.h"
 #include "tracing/vector.h"
 
 namespace whitted::WHITTED_ISA {
@@ -57,6 +59,14 @@ struct Checker {
 
     Color<Lanes<Real>> at(const Meeting<Real>& met) const {
         using L = Lanes<Real>;
+        const Vector<L> cell = cell_at(met);
+        const Mask<Real> odd_sum = odd(cell.x) ^ odd(cell.y) ^ odd(cell.z);
+        return select(odd_sum, Color<L>(second), Color<L>(first));
+    }
+
+    // The number of the cube, in each direction.
+    Vector<Lanes<Real>> cell_at(const Meeting<Real>& met) const {
+        using L = Lanes<Real>;
         const Vector<L>& p = met.point;
         const L rounding = 2 * tie_epsilon<Real>;
         Vector<L> cell{cell_of(p.x, rounding * abs(p.x)), cell_of(p.y, rounding * abs(p.y)),
@@ -72,8 +82,7 @@ struct Checker {
             const Vector<L> errors = met.errors();
             cell = select(close, {cell_of(p.x, errors.x), cell_of(p.y, errors.y), cell_of(p.z, errors.z)}, cell);
         }
-        const Mask<Real> odd_sum = odd(cell.x) ^ odd(cell.y) ^ odd(cell.z);
-        return select(odd_sum, Color<L>(second), Color<L>(first));
+        return cell;
     }
 
  private:
@@ -176,6 +185,22 @@ template <typename Real>
         return checker->at(met);
     }
     return std::get_if<Texmap<Real>>(&pigment)->at(met);
+}
+
+// A word for the piece of the pigment in a lane, a checker's cube. An image's texels are told apart by their colours
+// only, for most images are smooth.
+template <typename Real>
+std::uint32_t cell_word(const Pigment<Real>& pigment, const Meeting<Real>& met, int lane) {
+    if (const auto* checker = std::get_if<Checker<Real>>(&pigment)) {
+        const Vector<Lanes<Real>> cell = checker->cell_at(met);
+        const auto word = [&](Real number) {
+            constexpr Real period = 1 << 22;  // a float holds them all
+            const Real rest = number - std::floor(number / period) * period;
+            return rest > 0 ? static_cast<std::uint32_t>(rest) : 0U;
+        };
+        return combine(combine(word(cell.x[lane]), word(cell.y[lane])), word(cell.z[lane]));
+    }
+    return 0;
 }
 
 // The pigment is made of what the file says about it; a texmap keeps the description's texels.

@@ -30,6 +30,9 @@ class Recorder {
         record(successors, [&](int lane) { return group.record[lane]; }, kind);
     }
 
+    template <typename... Arguments>
+    void pigment(const Arguments&...) {}
+
     template <typename Real>
     void surface(const Group<Real>& group, const Scene<Real>& scene, const Hits<Real>& hits,
                  const Surface<Real>& surface) {

@@ -55,6 +55,9 @@ class Tracer {
     template <typename PrimaryRays>
     bool trace(PrimaryRays primary_rays, Color<Sum>* sums, RayCounts& counts, const std::atomic<bool>& stop);
 
+    // Whether the depth limit dropped a ray of a pixel that was traced last.
+    bool too_deep(std::size_t pixel) const { return pixel < pixels_.size() && pixels_[pixel].too_deep; }
+
  private:
     // The batch, not the number of lanes, decides which rays are traced next, so that the rays of a pixel are summed in
     // the same order on every processor.
@@ -75,9 +78,9 @@ class Tracer {
     void set_time(Group<Real>& group) const;
     Surface<Real> surface_at(const Rays<Real>& rays, const Hits<Real>& hits) const;
     void meet(const Object<Real>& object, int primitive, const Rays<Real>& rays, const Hits<Real>& hits,
-              const Vector<L>& near, Surface<Real>& surface) const;
+              Mask<Real> named, const Vector<L>& near, Surface<Real>& surface) const;
     void meet_moving(const Object<Real>& object, int primitive, const Rays<Real>& rays, const Hits<Real>& hits,
-                     Surface<Real>& surface) const;
+                     Mask<Real> named, Surface<Real>& surface) const;
     PlanePoint<Real> sample(const Group<Real>& group, std::uint32_t use) const;
     PlanePoint<Real> sample(const Group<Real>& group, Indices<Real> path, std::uint32_t use) const;
     Vector<L> to_disc(const Group<Real>& group, std::size_t light, const Vector<L>& center, L& error) const;
@@ -195,10 +198,11 @@ Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const H
         Surface<Real>& surface = first ? result : another;
         surface.hit = hit;
 
+        const Mask<Real> named = first ? hit : same;
         if (object.moves) [[unlikely]] {
-            meet_moving(object, primitive, rays, hits, surface);
+            meet_moving(object, primitive, rays, hits, named, surface);
         } else {
-            meet(object, primitive, rays, hits, p, surface);
+            meet(object, primitive, rays, hits, named, p, surface);
         }
 
         if (!first) {
@@ -213,7 +217,8 @@ Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const H
 template <typename Real, typename Observer>
 [[gnu::always_inline]] inline void Tracer<Real, Observer>::meet(const Object<Real>& object, int primitive,
                                                                 const Rays<Real>& rays, const Hits<Real>& hits,
-                                                                const Vector<L>& near, Surface<Real>& surface) const {
+                                                                Mask<Real> named, const Vector<L>& near,
+                                                                Surface<Real>& surface) const {
     const auto moved = scene_.shapes.visit(object.shape, [&](const auto& shape) __attribute__((always_inline)) {
         return shape.surface_at(primitive, near, rays, hits.inside);
     });
@@ -227,7 +232,9 @@ template <typename Real, typename Observer>
     const L along = min(off / abs(dot(surface.outward, rays.direction)), blur);
     surface.error = rounding_error(reach, hits.t) + along;
     surface.lean = moved.curvature * surface.error;
-    surface.pigment = color_at(*object.pigment, {surface.point, surface.outward, rays.direction, off, blur});
+    const Meeting<Real> met{surface.point, surface.outward, rays.direction, off, blur};
+    surface.pigment = color_at(*object.pigment, met);
+    observer_.pigment(*object.pigment, met, named);
     const Finish<Real>& finish = object.finish;
     surface.ka = finish.ka;
     surface.kd = finish.kd;
@@ -242,10 +249,10 @@ template <typename Real, typename Observer>
 template <typename Real, typename Observer>
 [[gnu::noinline]] void Tracer<Real, Observer>::meet_moving(const Object<Real>& object, int primitive,
                                                            const Rays<Real>& rays, const Hits<Real>& hits,
-                                                           Surface<Real>& surface) const {
+                                                           Mask<Real> named, Surface<Real>& surface) const {
     const Moving<Real>& moving = scene_.shapes.template at<Moving<Real>>(object.shape);
     const Rays<Real> resting = moving.bring_back(rays);
-    meet(object, primitive, resting, hits, resting.origin + hits.t * resting.direction, surface);
+    meet(object, primitive, resting, hits, named, resting.origin + hits.t * resting.direction, surface);
     moving.take_along(rays.time, surface.point, surface.error);
 }
 
