@@ -387,7 +387,7 @@ def carousel() -> SampledScene:
     shine = s.finish(SKY)
     bulb = s.finish("2.2 0 0 1 0 0 0", "a bulb")
     wet = s.finish("0.16 0.30 0 1 0.52 0 0 3", "wet pavement")
-    paint = s.finish("0.34 0.66 0.3 30 0.05 0 0")
+    paint = s.finish("0.34 0.66 0.3 30 0 0 0")
     s.sphere(night, shine, (0, 0, 0), 400)
     s.sphere(s.solid((0.96, 0.92, 0.80)), shine, (-98, 128, 330), 15)  # the moon
     s.disc((0, 3.6, -9), (1.15, 0.84, 0.55), 1.2, (1, 0.02, 0.006))
