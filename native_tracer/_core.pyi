@@ -94,6 +94,9 @@ class Scene:
         them, -3 intersects them. There are 64 leaves at most.
         """
 
+    def move_object(self, index: int, displacement: _Triple) -> None:
+        """Let an object, its pigment too, move by a displacement while the picture is taken."""
+
 class Image:
     """A picture to be drawn into: linear RGB, row 0 on top, black at first."""
 

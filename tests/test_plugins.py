@@ -324,6 +324,7 @@ HOST_DIVISIONS = {
     "intersection/shapes/quadric.py": {"_form", "_rows", "_anchor", "_contact"},
     "intersection/shapes/sphere.py": {"contacts"},
     "integrators/pace.py": {"__init__", "rows", "samples", "passes", "launch"},
+    "sampler.py": {"disc_point", "cone_direction", "_small_turn"},
     "trial.py": {"_memory"},
     "integrators/whitted.py": {"__init__", "_stage", "_corners", "sample_offsets"},
 }

@@ -29,7 +29,8 @@ def least_divisor(light: Light, o: Object, needs: SceneNeeds, index: int) -> flo
 
 
 def _distances(point: Vector, o: Object, needs: SceneNeeds, index: int) -> tuple[float, float]:
-    """Bounds of the distance between a point and the points of an object's surface."""
+    """Bounds of the distance between a point and the points of an object's surface, wherever that is."""
     found = shape_kind(o.shape).distances(o.shape, needs.facts[index], point)
-    slack = SLACK * found.largest
+    way = math.hypot(*o.move)
+    slack = SLACK * (found.largest + way) + way
     return max(0.0, found.nearest - slack), found.farthest + slack

@@ -4,7 +4,8 @@ A box on a box, a floor made of slabs: their faces share planes, which one of th
 `-10 -30 -20 20`. Normals of length 1 made of those differ in their last digits; which of the two faces is nearer would
 then be decided by rounding, another way for every ray. So such planes get the same numbers before anything is computed
 from them: distances tie, and of objects at the same distance the first of the file counts. Likewise the two planes of a
-plate without thickness: a ray then enters it exactly where it leaves.
+plate without thickness: a ray then enters it exactly where it leaves. Only last digits change, so that this is right
+for bodies that move, too.
 """
 
 from dataclasses import replace

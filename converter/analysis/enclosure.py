@@ -11,9 +11,9 @@ def enclosure_notices(scene: Scene, settings: Settings) -> tuple[str, ...]:
     """A line for each light and camera that is cut off from all else, by whatever method, with its line in the file.
 
     Every surface blocks light, a transparent one too: a light inside a body lights nothing outside of it, and one
-    outside of a body that the camera is in, nothing in there.
+    outside of a body that the camera is in, nothing in there. Of bodies that move nothing is told.
     """
-    bodies = range(len(scene.objects))
+    bodies = [i for i, o in enumerate(scene.objects) if not any(o.move)]
     needs = scene_needs(scene, settings)
     around = [i for i in bodies if _contains(scene, i, scene.camera.eye)]
     found = []
@@ -30,7 +30,7 @@ def enclosure_notices(scene: Scene, settings: Settings) -> tuple[str, ...]:
     for i in around:
         finish = scene.finishes[scene.objects[i].finish]
         alone = not any(_contains(scene, i, needs.facts[k].inside) for k in bodies if k != i)
-        if finish.kt == 0 and alone and len(scene.objects) > 1:
+        if finish.kt == 0 and alone and len(bodies) == len(scene.objects) > 1:
             found.append(
                 f"{place(scene.file, scene.objects[i].line)}: object {i} has the camera inside, and nothing else"
             )

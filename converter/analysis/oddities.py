@@ -168,8 +168,11 @@ def _through(point: Vector, normal: Vector) -> Plane:
 
 def _reaches(scene: Scene, i: int, half_spaces: list[Plane]) -> bool:
     """Whether an object may reach into the intersection of some half-spaces, whose normals have length 1."""
-    shape = scene.objects[i].shape
-    return shape_kind(shape).reaches(shape, half_spaces)
+    o = scene.objects[i]
+    if any(o.move):  # half-spaces come as near as the object comes to them
+        x, y, z = o.move
+        half_spaces = [(a, b, c, d + min(0.0, a * x + b * y + c * z)) for a, b, c, d in half_spaces]
+    return shape_kind(o.shape).reaches(o.shape, half_spaces)
 
 
 def _difference(p: Vector, q: Vector) -> Vector:

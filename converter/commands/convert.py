@@ -62,6 +62,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _to_mitsuba(scene: "Scene", settings: "Settings", out: Path, quiet: bool) -> tuple[list[Path], str]:
     """The files written, and what to do with them."""
     from converter.commands.notes import say
+    from converter.scene.needs import scene_needs
     from converter.to_mitsuba.export import MOST_SHAPES, export_scene
 
     files = export_scene(scene, settings, out)
@@ -70,6 +71,8 @@ def _to_mitsuba(scene: "Scene", settings: "Settings", out: Path, quiet: bool) ->
             f"note: of more than {MOST_SHAPES} objects no shapes are made: the `whitted` integrator alone sees them",
             quiet,
         )
+    if cause := scene_needs(scene, settings).effects.get("motion"):
+        say(f"note: {cause}, which the `whitted` integrator alone draws: Mitsuba's shapes stand still", quiet)
     lines = (
         "import mitsuba_plugins, mitsuba",
         "mitsuba_plugins.set_variant()",

@@ -22,6 +22,7 @@ from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
 import numpy as np
 
 from converter.compare.margins import (
+    Floats,
     edge_margin,
     intersections,
     silhouette_margin,
@@ -35,7 +36,7 @@ from converter.scene.geometry import simplified
 from converter.scene.model import Scene, Shape
 from converter.scene.needs import scene_needs
 from converter.scene.settings import Settings
-from converter.shapes.kind import tie_margin
+from converter.shapes.kind import Intersection, tie_margin
 from converter.shapes.table import shape_kind
 
 if TYPE_CHECKING:
@@ -224,7 +225,7 @@ class _Explainer:
         self._same_limits = len({(n.max_depth, each.cutoff) for n, each in zip(needs, settings, strict=True)}) == 1
         self._unit, self._hidden, self._moved, facets = ARITHMETICS[arithmetic]
         self._rounding = ROUNDINGS * self._unit
-        self._extents = [shape_kind(o.shape).extent(o.shape) for o in scene.objects]
+        self._extents = [shape_kind(o.shape).extent(o.shape) + max(map(abs, o.move)) for o in scene.objects]
         self._deviations: list[float] = [0.0] * len(scene.objects)
         self._tilts: dict[tuple[int, int | None], float] = {}
         if self._moved:
@@ -278,7 +279,7 @@ class _Explainer:
         inherited = min(spread(inherited), TWICE * math.dist(hit.point, hits[1].point))
         if _largest(hit.pigment, hits[1].pigment) > 2**-20:
             pigment = self._scene.pigments[self._scene.objects[hit.object].pigment]
-            margin = pigment_kind(pigment).edge_margin(pigment, np.array(hit.point))
+            margin = pigment_kind(pigment).edge_margin(pigment, self._at_rest(ray, hit.object, hit.point))
             near = _Margin(margin, inherited, own)
             yield _Cause(
                 "checker or texel edge", "pigment", ray, ray.throughput * _largest(ray.local, other.local), near
@@ -310,23 +311,29 @@ class _Explainer:
     def _shape(self, index: int) -> Shape:
         return self._scene.objects[index].shape
 
+    def _at_rest(self, ray: RayRecord, index: int, point: Sequence[float]) -> Floats:
+        """A point beside an object, at the time of a ray, as that stands still."""
+        return np.array(point) - (ray.time or 0.0) * np.array(self._scene.objects[index].move)
+
     def _hit_margins(
         self, ray: RayRecord, hits: Sequence[HitRecord], start: HitRecord | None, inherited: float, own: float
     ) -> Iterator[_Margin]:
-        o, d = np.array(ray.origin), np.array(ray.direction)
+        d = np.array(ray.direction)
         hidden = self._hidden * _reach(start) if start is not None else 0.0
         for index in {hit.object for hit in hits}:
-            shape = self._shape(index)
+            shape, o = self._shape(index), self._at_rest(ray, index, ray.origin)
             yield _Margin(min(silhouette_margin(shape, o, d), edge_margin(shape, o, d)), inherited, own)
             yield _Margin(
                 surface_margin(shape, o, start is not None and index == start.object), inherited, own + hidden
             )
         if len(hits) == 2 and hits[0].object != hits[1].object:
-            a, b = (
-                min(intersections(self._shape(hit.object), o, d), key=lambda c, t=hit.t: abs(c.t - t))  # type: ignore[misc]
-                for hit in hits
-            )
+            a, b = (self._intersection(ray, hit) for hit in hits)
             yield _Margin(tie_margin(a, b), inherited, own)
+
+    def _intersection(self, ray: RayRecord, hit: HitRecord) -> Intersection:
+        """Where the line of a ray meets an object about as far away as it has hit it."""
+        o, d = self._at_rest(ray, hit.object, ray.origin), np.array(ray.direction)
+        return min(intersections(self._shape(hit.object), o, d), key=lambda found: abs(found.t - hit.t))
 
     # ---- At a surface that both trees meet
 
@@ -342,21 +349,21 @@ class _Explainer:
             distance = float(np.linalg.norm(to_light))
             direction = to_light / distance
             # How far the light is above the horizon of the surface, which turns with the point.
-            turn = 1 + self._curvature(hits[0]) * distance
+            turn = 1 + self._curvature(ray, hits[0]) * distance
             rounded = self._rounding * distance
             tilted = self._tilt(hits[0]) * distance
             margins = [_Margin(abs(one.cosine) * distance, turn * inherited, turn * own + rounded + tilted)]
             for blocker in sorted({b for b in (one.shadowed_by, other.shadowed_by) if b is not None}):
-                shape = self._shape(blocker)
+                shape, start = self._shape(blocker), self._at_rest(ray, blocker, hits[0].point)
                 reach = _reach(hits[0])
                 less = own + self._rounding * max(self._extents[blocker], distance) + self._deviations[blocker]
                 less += self._moved * reach + 2 * self._deviations[index]
-                margins.append(_Margin(silhouette_margin(shape, p, direction), inherited, less))
-                near = surface_margin(shape, p, blocker == index)
+                margins.append(_Margin(silhouette_margin(shape, start, direction), inherited, less))
+                near = surface_margin(shape, start, blocker == index)
                 margins.append(_Margin(near, inherited, less + self._hidden * reach))
                 margins += [
                     _Margin(abs((c.t - distance) * c.cosine), inherited, less + self._hidden * reach)
-                    for c in intersections(shape, p, direction)
+                    for c in intersections(shape, start, direction)
                 ]
             amount = sum(_largest(*pair) for pair in _terms(one, other))
             yield _Cause("shadow edge", "light seen", ray, ray.throughput * amount, min(margins, key=_share))
@@ -366,26 +373,26 @@ class _Explainer:
     ) -> _Margin:
         """Of the squared cosine behind the surface, whose sign decides."""
         cosine, eta = self._refraction(ray, hit)
-        turn, steep = self._curvature(hit), 2 * eta * eta * cosine
+        turn, steep = self._curvature(ray, hit), 2 * eta * eta * cosine
         margin = abs(1 - eta * eta * (1 - cosine * cosine))
         return _Margin(margin, steep * (direction + turn * inherited), steep * turn * own + self._rounding * eta * eta)
 
     def _spread(self, ray: RayRecord, hit: HitRecord) -> Callable[[float], float]:
         """What an error of the ray's line makes of the position of its hit."""
         cosine = max(abs(float(np.dot(ray.direction, hit.normal))), 1e-12)
-        radius = self._radius(hit)
+        radius = self._radius(ray, hit)
         if radius < math.inf:
             return lambda off: min(off / cosine, off + math.sqrt(2 * radius * off))
         return lambda off: off / cosine
 
-    def _radius(self, hit: HitRecord) -> float:
+    def _radius(self, ray: RayRecord, hit: HitRecord) -> float:
         """The smallest radius of curvature of the surface at a hit."""
         shape = self._shape(hit.object)
-        return shape_kind(shape).radius_of_curvature(shape, np.array(hit.point))
+        return shape_kind(shape).radius_of_curvature(shape, self._at_rest(ray, hit.object, hit.point))
 
-    def _curvature(self, hit: HitRecord) -> float:
+    def _curvature(self, ray: RayRecord, hit: HitRecord) -> float:
         """By what angle the normal turns in a unit of length."""
-        return 1 / max(self._radius(hit), SHARPEST)
+        return 1 / max(self._radius(ray, hit), SHARPEST)
 
     def _tilt(self, hit: HitRecord) -> float:
         """By what angle the normal at a hit may be off, where it is a triangle's."""
@@ -399,7 +406,7 @@ class _Explainer:
 
     def _bounced(self, ray: RayRecord, hit: HitRecord, child: RayRecord, direction: float, off: float) -> _Error:
         """The error of a ray that leaves a surface where its origin is off by `off`, one of `direction` coming in."""
-        turned = self._curvature(hit) * off + self._tilt(hit) + self._rounding
+        turned = self._curvature(ray, hit) * off + self._tilt(hit) + self._rounding
         off += self._moved * _reach(hit)
         if child.kind == "reflected" or hit.total_reflection:
             return _Error(off, direction + 2 * turned + self._rounding)

@@ -113,7 +113,9 @@ def _filled(remarks: Sequence[str], width: int) -> list[str]:
 def _remarks(ray: RayRecord, scene: Scene) -> list[str]:
     """What a line of the table has no room for."""
     hit = ray.hit
-    result = [] if hit is None else [_light(light, scene) for light in hit.lights]
+    result = [f"time {ray.time:.4f}"] if ray.time is not None and ray.kind == "primary" else []
+    if hit is not None:
+        result += [_light(light, scene) for light in hit.lights]
     if hit is not None and hit.total_reflection:
         result.append("total internal reflection: the transmitted ray follows the mirror direction")
     if ray.dropped:

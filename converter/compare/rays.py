@@ -75,6 +75,8 @@ def _ray_differences(reference: RayRecord, test: RayRecord) -> list[Unequal]:
     one, other = reference.hit, test.hit
     scale = max([*map(abs, reference.origin), *(hit.t for hit in (one, other) if hit)])
     comparison.near("throughput", reference.throughput, test.throughput)
+    if reference.time is not None and test.time is not None:
+        comparison.near("time", reference.time, test.time)
     comparison.near("origin", reference.origin, test.origin, scale)
     comparison.near("direction", reference.direction, test.direction)
     if one is None or other is None:

@@ -77,8 +77,8 @@ class EffectUnavailable(RendererUnavailable):
     """A renderer cannot draw an effect that a scene has; the message says which, and what has it."""
 
 
-def refuse_effects(needs: SceneNeeds, renderer: str, drawn: Collection[Effect] = ()) -> None:
-    """See that a scene has no effects but those `drawn`; `renderer` is its name in a sentence.
+def refuse_effects(needs: SceneNeeds, renderer: str, drawn: Collection[Effect] = (), others: str = "") -> None:
+    """See that a scene has no effects but those `drawn`; `renderer` is its name in a sentence, `others` says which do.
 
     Raises:
         EffectUnavailable: it has.
@@ -86,7 +86,8 @@ def refuse_effects(needs: SceneNeeds, renderer: str, drawn: Collection[Effect] =
     """
     for effect, cause in needs.effects.items():
         if effect not in drawn:
-            raise EffectUnavailable(f"{cause}, and {renderer} does not draw {effect}")
+            message = f"{cause}, and {renderer} does not draw {effect}"
+            raise EffectUnavailable(f"{message}: {others}" if others else message)
 
 
 class Renderer(Protocol):

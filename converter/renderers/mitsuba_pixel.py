@@ -103,7 +103,8 @@ class _Tracer:
     def trees(self, rays: _Rays) -> list[RayRecord]:
         """The rays' records, with everything below them."""
         origin, direction = rays.places()
-        roots = [RayRecord("primary", 1.0, 0, o, d) for o, d in zip(origin, direction, strict=True)]
+        times = self._times(rays)
+        roots = [RayRecord("primary", 1.0, 0, *place) for place in zip(origin, direction, times, strict=True)]
         level, count = roots, 0
         bounces = []
         while level:
@@ -121,6 +122,12 @@ class _Tracer:
                     record.radiance = tuple(a + factors[child.kind] * b for a, b in pairs)
         return roots
 
+    def _times(self, rays: _Rays) -> list[float | None]:
+        """The time of each ray, if it has one."""
+        key, number, _ = rays.names()
+        time = self._integrator.timed(rays.ray(self._integrator.types), Sample(key, number)).time
+        return [None] * len(rays) if time is None else _list(time, len(rays))
+
     def _follow(self, level: list[RayRecord], rays: _Rays) -> tuple[list[RayRecord], _Rays, list[dict[RayKind, float]]]:
         """Complete the records of rays of one depth; begin those of the rays that follow, and give these, and for each
         of the former its kr and kt.
@@ -133,13 +140,14 @@ class _Tracer:
         key, number, path = rays.names()
         sample = Sample(key, number)
         # Numbers and no expressions of them: every bounce then runs the same few kernels.
+        ray = integrator.timed(ray, sample)
         dr.make_opaque(ray, sample, path)
         hit = integrator.closest(ray, lanes(count))
         dr.make_opaque(hit)
         finish, pigment = integrator.material(ray, hit)
         dr.make_opaque(finish, pigment)
-        through, total = integrator.transmitted(ray, hit, finish, sample, path)
-        mirrored = integrator.reflected(ray, hit, finish, sample, path)
+        through, total = integrator.transmitted(ray, hit, finish, sample, path, hit.valid)
+        mirrored = integrator.reflected(ray, hit, finish, sample, path, hit.valid)
         depth = level[0].depth + 1
         throughput = column(integrator.types.Float, [record.throughput for record in level])
         mirror_throughput, mirrors, through_throughput, refracts = integrator.followed(
@@ -175,7 +183,7 @@ class _Tracer:
                 which.append((i, its_throughput))
             chosen.append(secondary.chosen([i for i, _ in which]))
             for (i, its_throughput), o, d in zip(which, *chosen[-1].places(), strict=True):
-                following.append(RayRecord(kind, its_throughput, depth, o, d))
+                following.append(RayRecord(kind, its_throughput, depth, o, d, level[i].time))
                 level[i].children.append(following[-1])
         return following, chosen[0].with_more(chosen[1]), coefficients
 

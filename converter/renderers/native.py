@@ -35,7 +35,7 @@ Precision = Literal["float", "double", "long double"]
 Search = Literal["auto", "brute", "bvh"]
 _RAYS = ("primary", "reflected", "transmitted", "shadow")
 """Names of the tracer's counters of rays."""
-EFFECTS: tuple[Effect, ...] = ("soft shadows", "glossy rays", "depth of field")
+EFFECTS: tuple[Effect, ...] = ("soft shadows", "glossy rays", "depth of field", "motion")
 """What of distributed ray tracing it draws."""
 
 
@@ -236,8 +236,10 @@ def build_scene(scene: Scene, needs: SceneNeeds) -> Any:
     for i in needs.finishes:
         f = scene.finishes[i]
         finishes[i] = native.add_finish(f.ka, f.kd, f.ks, f.alpha, f.kr, f.kt, needs.etas[i], f.cone)
-    for o, facts in zip(with_planes_shared(scene).objects, needs.facts, strict=True):
+    for i, (o, facts) in enumerate(zip(with_planes_shared(scene).objects, needs.facts, strict=True)):
         shape_kind(o.shape).add_to(native, o.shape, facts, pigments[o.pigment], finishes[o.finish])
+        if any(o.move):
+            native.move_object(i, o.move)
     return native
 
 

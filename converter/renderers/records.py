@@ -71,6 +71,7 @@ class RayRecord:
         throughput: product of the kr and kt that lead to it.
         depth: bounces before it.
         origin, direction: three numbers each; the direction has length 1.
+        time: from 0 to 1, of all rays of a tree; None where nothing moves.
         hit: what it hits; None if it hits nothing.
         local: its colour without that of secondary rays; the background's where nothing is hit.
         radiance: its colour with theirs, not multiplied by its own throughput.
@@ -83,6 +84,7 @@ class RayRecord:
     depth: int
     origin: Triple
     direction: Triple
+    time: float | None = None
     hit: HitRecord | None = None
     local: Triple = (0.0, 0.0, 0.0)
     radiance: Triple = (0.0, 0.0, 0.0)

@@ -17,8 +17,11 @@ from converter.to_mitsuba.integrator import Intersections, RayPrecision, integra
 from converter.to_mitsuba.lights import light
 from converter.to_mitsuba.surfaces import exact_surfaces, material_name, shapes
 
-EFFECTS: tuple[Effect, ...] = ("soft shadows", "glossy rays", "depth of field")
+EFFECTS: tuple[Effect, ...] = ("soft shadows", "glossy rays", "depth of field", "motion")
 """What of distributed ray tracing the integrator draws."""
+STILL: tuple[Intersections, ...] = ("mesh", "offset", "ulp")
+"""Intersections that use Mitsuba's shapes, which do not move."""
+MOVING = "native, mitsuba-analytic and mitsuba-bvh do"
 
 
 def scene_description(
@@ -43,6 +46,9 @@ def scene_description(
     scene = with_planes_shared(simplified(scene))
     needs = scene_needs(scene, settings)
     refuse_effects(needs, "Mitsuba with our plugins", EFFECTS)
+    if intersections in STILL:
+        still = [effect for effect in EFFECTS if effect != "motion"]
+        refuse_effects(needs, f"Mitsuba with intersections by its own shapes ({intersections})", still, MOVING)
     geometry = exact_surfaces(scene, needs)
     found: dict[str, Any] = {}
     if with_shapes:

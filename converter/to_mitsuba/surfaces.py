@@ -18,9 +18,13 @@ def material_name(o: Object) -> str:
 def exact_surfaces(scene: Scene, needs: SceneNeeds) -> dict[str, dict[str, Any]]:
     """Every object by its name, as the integrator's `geometry` lists them."""
     return {
-        f"object_{i}": {"material": material_name(o), **shape_kind(o.shape).geometry(o.shape, facts)}
+        f"object_{i}": {"material": material_name(o), **shape_kind(o.shape).geometry(o.shape, facts), **_motion(o)}
         for i, (o, facts) in enumerate(zip(scene.objects, needs.facts, strict=True))
     }
+
+
+def _motion(o: Object) -> dict[str, Any]:
+    return {"move": list(o.move)} if any(o.move) else {}
 
 
 def shapes(

@@ -31,10 +31,10 @@ class RayStack:
         for buffer, number in zip(self._buffers, numbers, strict=True):
             buffer.write(number, slot, active)
 
-    def read(self, slot: Any, active: Any) -> tuple[Ray, Any, Any, Any]:
-        """The ray, weight, depth and path, if it is kept, at `slot`."""
+    def read(self, slot: Any, time: Any, active: Any) -> tuple[Ray, Any, Any, Any]:
+        """The ray, whose tree has one time, weight, depth and path, if it is kept, at `slot`."""
         ox, oy, oz, dx, dy, dz, t_min, spread, index, primitive, inside, weight, depth, *path = (
             buffer.read(slot, active) for buffer in self._buffers
         )
         o, d = self._types.Point3(ox, oy, oz), self._types.Vector3(dx, dy, dz)
-        return Ray(o, d, index, primitive, inside == 1, t_min, spread), weight, depth, *(path or [mi.UInt32(0)])
+        return Ray(o, d, index, primitive, inside == 1, t_min, spread, time), weight, depth, *(path or [mi.UInt32(0)])

@@ -2,7 +2,7 @@
 
 import math
 from contextlib import contextmanager
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import drjit as dr
@@ -97,7 +97,7 @@ class Whitted(mi.SamplingIntegrator):
      * - seed
        - |int|
        - Start of the random numbers, where something is sampled: a light with a radius, a finish with a cone, a sensor
-         with an aperture (Default: 0)
+         with an aperture, an object that moves (Default: 0)
 
      * - reflection, refraction, branching
        - |bool|
@@ -151,6 +151,9 @@ class Whitted(mi.SamplingIntegrator):
         if self.intersections == "auto" or (self.intersections == "bvh" and not self.surfaces):  # of nothing, no tree
             size = sum(len(surface.rows) for surface in self.surfaces)
             self.intersections = "analytic" if size <= ANALYTIC_LIMIT else "bvh"
+        self.moves = any(surface.moves for surface in self.surfaces)
+        if self.moves and self.intersections not in ("analytic", "bvh"):
+            raise ValueError(f"whitted: 'geometry' moves objects, and the shapes of '{self.intersections}' stand still")
         self.precision = props.get("precision", "double")
         if self.precision not in ("double", "float"):
             raise ValueError(f"whitted: precision is double or float, not '{self.precision}'")
@@ -199,7 +202,7 @@ class Whitted(mi.SamplingIntegrator):
         self._has_lens = getattr(sensor, "has_lens", False)
         self.signing = signing
         # Then rays have paths.
-        self.sampled = self._soft_shadows or self._spreads or self._has_lens or signing
+        self.sampled = self.moves or self._soft_shadows or self._spreads or self._has_lens or signing
         contacts = Contacts(self.surfaces)
         self._light_contacts = LightContacts(self.types, contacts, self._lights.positions, self._lights.radii)
         on_something = hasattr(sensor, "eye") and not self._has_lens
@@ -220,6 +223,12 @@ class Whitted(mi.SamplingIntegrator):
 
     # ------------------------------------------------------------------ one ray
 
+    def timed(self, ray: Ray, sample) -> Ray:
+        """A ray with the time of its `sample`, which its whole tree has, where anything moves."""
+        if not self.moves:
+            return ray
+        return replace(ray, time=sample.square(self.types.Float, samples.PRIMARY_PATH, samples.TIME)[0])
+
     def closest(self, ray: Ray, active) -> Hit:
         """The first surface that a ray meets."""
         return self._tracer.closest(ray, active)
@@ -227,14 +236,14 @@ class Whitted(mi.SamplingIntegrator):
     def material(self, ray: Ray, hit: Hit):
         """The finish and the pigment's colour at a hit."""
         finish = self._materials.finish(hit.object, hit.valid)
-        return finish, self._materials.color(hit.object, hit.p, self._errors(ray, hit), hit.valid)
+        return finish, self._materials.color(hit.object, hit.place, self._errors(ray, hit), hit.valid)
 
     def _errors(self, ray: Ray, hit: Hit):
         """How far the coordinates of a hit may be off, where a pigment asks."""
         decides = decides_ties(hit.t) and self.intersections not in ("offset", "ulp")
         if not decides or not self._materials.has_edges:
             return self.types.Vector3(0)
-        return coordinate_errors(hit.p, hit.n, ray.d, hit.t, hit.off)
+        return coordinate_errors(hit.place, hit.n, ray.d, hit.t, hit.off)
 
     def light(self, index, ray: Ray, hit: Hit, finish: Finish, color, active, sample, path) -> Illumination:
         """What one light, by its index, adds at a hit of a `sample`'s ray of that path."""
@@ -271,36 +280,38 @@ class Whitted(mi.SamplingIntegrator):
         cosine = dr.dot(n, unit(to_light - ray.d)) if self._materials.blinn else dr.dot(reflect(ray.d, n), to_light)
         return power(dr.minimum(dr.maximum(cosine, 0), 1), alpha)  # what is rounded above 1 has no bounds
 
-    def reflected(self, ray: Ray, hit: Hit, finish: Finish, sample, path) -> Ray:
+    def reflected(self, ray: Ray, hit: Hit, finish: Finish, sample, path, active) -> Ray:
         """The ray that follows a `sample`'s ray of that path in the mirror direction."""
-        spread = mirrored_spread(ray, hit)
-        return self._spawn(hit, reflect(ray.d, hit.n), hit.inside, spread, finish, sample, path, samples.MIRRORED_CONE)
+        d, spread = reflect(ray.d, hit.n), mirrored_spread(ray, hit)
+        if self._spreads:
+            d, spread = self._in_cone(d, spread, hit, hit.inside, finish, sample, path, samples.MIRRORED_CONE, active)
+        return self._tracer.spawn(hit, d, hit.inside, spread)
 
-    def transmitted(self, ray: Ray, hit: Hit, finish: Finish, sample, path) -> tuple[Ray, Any]:
+    def transmitted(self, ray: Ray, hit: Hit, finish: Finish, sample, path, active) -> tuple[Ray, Any]:
         """The refracted ray, or the mirrored one past the critical angle, and whether it is past."""
         eta = dr.select(hit.inside, quotient(1, finish.eta), finish.eta)
         n = dr.select(hit.inside, -hit.n, hit.n)
         d, total, spread = refract(ray.d, n, eta, dr.minimum(ray.spread + hit.lean, most_blur(ray.spread)))
         spread = dr.select(total, mirrored_spread(ray, hit), spread)
         inside = hit.inside == total
-        return self._spawn(hit, d, inside, spread, finish, sample, path, samples.REFRACTED_CONE), total
-
-    def _spawn(self, hit: Hit, d, inside, spread, finish: Finish, sample, path, use) -> Ray:
-        """The ray that leaves a hit in direction `d`, or uniform in the cone about it, where the finish has one.
-
-        A direction in the cone that leads to the other side of the tangent plane is mirrored in that.
-        """
         if self._spreads:
+            d, spread = self._in_cone(d, spread, hit, inside, finish, sample, path, samples.REFRACTED_CONE, active)
+        return self._tracer.spawn(hit, d, inside, spread), total
+
+    @dr.syntax
+    def _in_cone(self, d, spread, hit: Hit, inside, finish: Finish, sample, path, use, active):
+        """A direction that is uniform in the cone about `d`, where the finish has one, and how far it may be off.
+
+        One that leads to the other side of the tangent plane is mirrored in that.
+        """
+        if active & (finish.versine > 0):
             square = sample.square(self.types.Float, path, use)
-            direction = samples.cone_direction(d, finish.versine, *square)
+            d = samples.cone_direction(d, finish.versine, *square)
             n = dr.select(inside, -hit.n, hit.n)
-            direction = unit(direction - n * (2 * dr.minimum(dr.dot(n, direction), 0)))
-            spreads = finish.versine > 0
-            d = dr.select(spreads, direction, d)
+            d = unit(d - n * (2 * dr.minimum(dr.dot(n, d), 0)))
             # By eight times at most do the frame's axes turn faster than its axis.
-            more = dr.minimum(8 * spread + 2 * hit.lean, most_blur(spread))
-            spread = dr.select(spreads, more, spread)
-        return self._tracer.spawn(hit, d, inside, spread)
+            spread = dr.minimum(8 * spread + 2 * hit.lean, most_blur(spread))
+        return d, spread
 
     # ------------------------------------------------------------------ the ray tree
 
@@ -317,6 +328,7 @@ class Whitted(mi.SamplingIntegrator):
         radiance = dr.zeros(self.types.Color3, width)
         weight = dr.full(self.types.Float, 1, width)
         depth = dr.zeros(mi.UInt32, width)
+        ray = self.timed(ray, sample)
         active = active & lanes(width)
         too_deep = dr.zeros(mi.Bool, width) if self.depth_limited else False
         signature = dr.zeros(mi.UInt32, width) if self.signing else mi.UInt32(0)
@@ -338,8 +350,8 @@ class Whitted(mi.SamplingIntegrator):
                 too_deep |= hit.valid & (depth > self.max_depth) & (heavier > 0) & (heavier >= self.cutoff)
             active = mirrors | refracts
             if dr.hint(self.branching, mode="scalar"):
-                through = self.transmitted(ray, hit, finish, sample, path)[0]
-                mirrored = self.reflected(ray, hit, finish, sample, path)
+                through = self.transmitted(ray, hit, finish, sample, path, refracts)[0]
+                mirrored = self.reflected(ray, hit, finish, sample, path, mirrors)
                 pushes = mirrors & refracts
                 # The lighter one first, which has the smaller tree below it: so few rays wait.
                 mirrors_first = mirrors & ~(refracts & (finish.kt < finish.kr))
@@ -356,7 +368,7 @@ class Whitted(mi.SamplingIntegrator):
                 weight = dr.select(mirrors_first, mirror_weight, through_weight)
                 resumes = ~active & (waiting > 0)
                 waiting -= dr.select(resumes, mi.UInt32(1), 0)
-                waiting_ray, waiting_weight, waiting_depth, waiting_path = stack.read(waiting, resumes)
+                waiting_ray, waiting_weight, waiting_depth, waiting_path = stack.read(waiting, ray.time, resumes)
                 ray = dr.select(resumes, waiting_ray, ray)
                 weight = dr.select(resumes, waiting_weight, weight)
                 depth = dr.select(resumes, waiting_depth, depth)
@@ -365,18 +377,18 @@ class Whitted(mi.SamplingIntegrator):
                 active |= resumes
             elif dr.hint(self.reflection and self.refraction, mode="scalar"):
                 weight = dr.select(mirrors, mirror_weight, through_weight)
-                through = self.transmitted(ray, hit, finish, sample, path)[0]
-                ray = dr.select(mirrors, self.reflected(ray, hit, finish, sample, path), through)
+                through = self.transmitted(ray, hit, finish, sample, path, refracts)[0]
+                ray = dr.select(mirrors, self.reflected(ray, hit, finish, sample, path, mirrors), through)
                 if dr.hint(self.sampled, mode="scalar"):
                     path = 2 * path + dr.select(mirrors, mi.UInt32(0), 1)
             elif dr.hint(self.reflection, mode="scalar"):
                 weight = mirror_weight
-                ray = self.reflected(ray, hit, finish, sample, path)
+                ray = self.reflected(ray, hit, finish, sample, path, mirrors)
                 if dr.hint(self.sampled, mode="scalar"):
                     path = 2 * path
             elif dr.hint(self.refraction, mode="scalar"):
                 weight = through_weight
-                ray = self.transmitted(ray, hit, finish, sample, path)[0]
+                ray = self.transmitted(ray, hit, finish, sample, path, refracts)[0]
                 if dr.hint(self.sampled, mode="scalar"):
                     path = 2 * path + 1
         return radiance, too_deep, signature
@@ -564,7 +576,7 @@ class Whitted(mi.SamplingIntegrator):
     def _hit_word(self, ray: Ray, hit: Hit, path):
         """What the hit of a ray of that path adds to a signature."""
         piece = dr.gather(mi.UInt32, self._pieces, hit.primitive & UPRIGHT, hit.valid)
-        cell = self._materials.cell(hit.object, hit.p, self._errors(ray, hit), hit.valid)
+        cell = self._materials.cell(hit.object, hit.place, self._errors(ray, hit), hit.valid)
         inside = dr.select(hit.inside, mi.UInt32(1), 0)
         return hit_word(path, hit.object, piece, inside, cell)
 

@@ -13,6 +13,7 @@ import mitsuba as mi
 from mitsuba_plugins.intersection.contacts import LightContacts
 from mitsuba_plugins.intersection.csg_search import SearchedCsg
 from mitsuba_plugins.intersection.geometry import Surface
+from mitsuba_plugins.intersection.motion import bring_back, motion_row
 from mitsuba_plugins.intersection.passages import Crossing, crossing_if
 from mitsuba_plugins.intersection.primitives import Primitives
 from mitsuba_plugins.intersection.rays import NOTHING, Ray, Real, largest
@@ -30,7 +31,8 @@ class AnalyticSurfaces(ExactSurfaces):
         self._solids = [surface.solid for surface in surfaces]
         self._rows = [[types.Vector4(*row) for row in surface.rows] for surface in surfaces]
         self._bounds = [self._bound(surface) for surface in surfaces]
-        dr.make_opaque(self._rows, self._bounds)
+        self._motions = [types.Vector4(*motion_row(surface)) if surface.moves else None for surface in surfaces]
+        dr.make_opaque(self._rows, self._bounds, self._motions)
 
     def _bound(self, surface: Surface) -> tuple[Any, Any] | None:
         """Centre and radius of a sphere around a bounded surface, if it is worth its test."""
@@ -79,6 +81,10 @@ class AnalyticSurfaces(ExactSurfaces):
 
     def _intersect(self, index: int, ray: Ray, reach: Any, which_piece: bool) -> Crossing:
         """Where rays cross one surface."""
+        motion = self._motions[index]
+        if motion is not None:
+            ray = bring_back(ray, motion)
+            reach = largest(ray.o)
         bound = self._bounds[index]
         if bound is None:
             return self._intersect_rows(index, ray, reach, which_piece)

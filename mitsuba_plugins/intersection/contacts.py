@@ -53,18 +53,32 @@ class Contacts:
                 first += len(shape.rows)
 
     def of(self, point: Numbers) -> list[Contact]:
-        """The contacts of a point (3,) with primitives, wherever these are on their bodies, in their order."""
+        """The contacts of a point (3,) with primitives, wherever these are on their bodies, in their order.
+
+        Of those that move only at all times: with primitives that slide in themselves.
+        """
         found = [
             Contact(place.object, place.shape, place.primitive, at.normal, at.curvature)
             for kind, (places, numbers) in self._primitives.items()
             for at in kind.contacts(point, np.array(numbers, dtype=np.float64))
             for place in (places[at.row],)
+            if self._keeps(place.object, kind, numbers[at.row])
         ]
         return sorted(found, key=lambda contact: contact.primitive)
 
+    def _keeps(self, index: int, kind: ShapeKind, numbers: "Sequence[float]") -> bool:
+        """Whether what lies on an object's primitive, as given, does so at all times."""
+        surface = self._surfaces[index]
+        return not surface.moves or kind.slides(np.array(surface.move), numbers)
+
     def on_body(self, point: Numbers, contact: Contact) -> Contact | None:
-        """The contact, its normal outward, if the point is on the body; None in a face's plane beside the face."""
+        """The contact, its normal outward, if the point is on the body; None in a face's plane beside the face.
+
+        Nor is it said of a body that moves: it may be there at some times only.
+        """
         surface = self._surfaces[contact.object]
+        if surface.moves:
+            return None
         inside = [kind.contains(point, np.array(shape.given, dtype=np.float64)) for kind, shape in surface.shapes]
         if not isinstance(surface.solid, Csg):
             return contact if inside[0] else None

@@ -12,6 +12,7 @@ which ties go:
      "object_3": {"material": "name of a BSDF", "csg": {"leaves": [as above, without materials], "program": [0, 1, -2]},
                   "box": likewise}}
 
+An object that moves has its displacement too, "move": [dx, dy, dz]; its shape, box and pigment are those at time 0.
 A quadric is where A x^2 + B y^2 + C z^2 + D xy + E xz + F yz + G x + H y + I z + J <= 0; it needs no box.
 A csg's program is in postfix notation: k from 0 on is leaf k, -1 a union, -2 a difference, -3 an intersection.
 
@@ -47,6 +48,22 @@ class Surface:
     box: Box | None  # around it, with room for rounding; None where that is not finite
     triangles: tuple[int, ...] = ()
     deviation: float = 0.0
+    move: Vector = (0.0, 0.0, 0.0)
+
+    @property
+    def moves(self) -> bool:
+        """Whether it is elsewhere at other times."""
+        return any(self.move)
+
+    @property
+    def swept(self) -> Box | None:
+        """A box around it wherever it is: around both ends of its way, which is straight."""
+        if self.box is None or not self.moves:
+            return self.box
+        (a, b, c), (d, e, f) = self.box
+        x, y, z = self.move
+        low = a + min(0.0, x), b + min(0.0, y), c + min(0.0, z)
+        return _roomy(low, (d + max(0.0, x), e + max(0.0, y), f + max(0.0, z)))
 
     @property
     def rows(self) -> list[Row]:
@@ -102,7 +119,8 @@ def _surface(name: str, entry: dict[str, Any]) -> Surface:
         solid = _csg(program, leaves_of(shapes))
     room = _roomy(*box) if box is not None else None
     triangles, deviation = tuple(entry.get("triangles", ())), entry.get("deviation", 0.0)
-    return Surface(name, entry["material"], solid, tuple(shapes), room, triangles, deviation)
+    dx, dy, dz = map(float, entry.get("move", (0, 0, 0)))
+    return Surface(name, entry["material"], solid, tuple(shapes), room, triangles, deviation, (dx, dy, dz))
 
 
 def _csg(program: tuple[int, ...], leaves: tuple[Leaf, ...]) -> Csg:

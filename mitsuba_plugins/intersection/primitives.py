@@ -11,8 +11,9 @@ from mitsuba_plugins.intersection.csg import Csg
 from mitsuba_plugins.intersection.csg_search import SearchedCsg
 from mitsuba_plugins.intersection.geometry import Surface
 from mitsuba_plugins.intersection.leaf_table import GatheredLeaves, LeafTable
+from mitsuba_plugins.intersection.motion import bring_back, motion_row, take_along
 from mitsuba_plugins.intersection.passages import Crossing, crossing_if, first_crossing
-from mitsuba_plugins.intersection.rays import UPRIGHT, Ray, Real
+from mitsuba_plugins.intersection.rays import UPRIGHT, Ray, Real, largest
 from mitsuba_plugins.intersection.rows import GatheredRows
 from mitsuba_plugins.intersection.shapes.kind import ShapeKind, SurfacePoint
 from mitsuba_plugins.intersection.shapes.table import SHAPE_KINDS
@@ -48,12 +49,26 @@ class Primitives:
         self._count = column(mi.UInt32, [len(surface.rows) for surface in surfaces])
         any_searched = any(isinstance(solid, SearchedCsg) for solid in self._solids)
         self._leaves = LeafTable(types, surfaces, self.first) if any_searched else None
+        self.any_moving = any(surface.moves for surface in surfaces)
+        """Whether rays need a time."""
+        self._motion = column(types.Float, [motion_row(surface) for surface in surfaces]) if self.any_moving else None
         self.object_count = mi.UInt32(len(surfaces))
         dr.make_opaque(self.object_count)
 
     def row(self, primitive: Any, active: Any) -> Any:
         """The four numbers of a row (Vector4), by its index."""
         return dr.gather(self.types.Vector4, self._rows, primitive, active)
+
+    def at_rest(self, ray: Ray, index: Any, active: Any) -> Ray:
+        """A ray as it meets an object, a different one for each, where that stands still."""
+        return bring_back(ray, self._motion_of(index, active)) if self.any_moving else ray
+
+    def taken_along(self, ray: Ray, index: Any, p: Any, error: Any, active: Any) -> tuple[Any, Any]:
+        """A point of an object at rest where that is, and how far it may be off, given how far it may be at rest."""
+        return take_along(ray, self._motion_of(index, active), p, error) if self.any_moving else (p, error)
+
+    def _motion_of(self, index: Any, active: Any) -> Any:
+        return dr.gather(self.types.Vector4, self._motion, index, active)
 
     def leaves_of(self, index: Any, active: Any, width: int) -> GatheredLeaves:
         """The leaves of large csgs, by the indices of their objects."""
@@ -64,6 +79,9 @@ class Primitives:
         self, ray: Ray, index: Any, active: Any, reach: Any, which_piece: bool = True, by_rules: bool = False
     ) -> Crossing:
         """Where each ray crosses an object, a different one for each; `by_rules` of ties, or saying if it is close."""
+        if self.any_moving:
+            ray = self.at_rest(ray, index, active)
+            reach = largest(ray.o)
         own = ray.object == index
         first = dr.gather(mi.UInt32, self._first, index, active)
         width = dr.width(ray.d, index)
@@ -102,7 +120,7 @@ class Primitives:
         return _by_kind(self._kinds, self._kind, primitive, active, intersect)
 
     def surface_at(self, ray: Ray, index: Any, primitive: Any, p: Any, active: Any, reach: Any) -> SurfacePoint:
-        """The point of a primitive of object `index` nearest to a point near it that a ray has met."""
+        """The point of a primitive of object `index` nearest to a point near it that a ray has met, both at rest."""
         own = ray.object == index
         row = primitive & UPRIGHT if self.any_csg else primitive
         first = self.row(row, active)  # in one gather for all kinds

@@ -58,6 +58,7 @@ class Ray:
     inside: Any  # Bool, whether the ray travels inside `object`
     t_min: Any  # Float, how far o may be off; a hit on anything but `object` is farther
     spread: Any  # Float, how far d may be off, see `rounding`
+    time: Any = None  # Float from 0 to 1, where something moves
 
 
 @dataclass
@@ -74,6 +75,8 @@ class Hit:
     off: Any  # Float, how far ray and surface may be off from one another there
     error: Any  # Float, how far p may be off
     lean: Any  # Float, how far n may be off
+    place: Any  # Point3, where p is on the object at time 0, as its pigment is told
+    time: Any = None  # Float, the ray's
 
 
 def ray_reach(ray: Ray) -> Any:
@@ -110,7 +113,7 @@ def lanes(width: int) -> Any:
 
 def spawn(hit: Hit, d: Any, inside: Any, spread: Any) -> Ray:
     """The ray that leaves `hit` in direction `d`, which may be off by `spread`, on the given side of the object."""
-    return Ray(hit.p, d, hit.object, hit.primitive, inside, hit.error, spread)
+    return Ray(hit.p, d, hit.object, hit.primitive, inside, hit.error, spread, hit.time)
 
 
 def origin_error(p: Any, t: Any) -> Any:

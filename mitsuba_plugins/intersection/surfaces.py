@@ -9,7 +9,7 @@ from mitsuba_plugins.intersection.contacts import LightContacts
 from mitsuba_plugins.intersection.primitives import Primitives
 from mitsuba_plugins.intersection.rays import NOTHING, Hit, Ray, largest, origin_error, shadow_spread, spawn
 from mitsuba_plugins.intersection.rounding import decides_ties, most_blur
-from mitsuba_plugins.intersection.ties import Ties
+from mitsuba_plugins.intersection.ties import AllObjects, Candidates, Ties
 
 
 class ExactSurfaces:
@@ -18,10 +18,11 @@ class ExactSurfaces:
     Masks of active rays come from `lanes`.
     """
 
-    def __init__(self, primitives: Primitives, contacts: LightContacts) -> None:
+    def __init__(self, primitives: Primitives, contacts: LightContacts, candidates: Candidates | None = None) -> None:
+        """Look for ties among `candidates`, or all objects."""
         self.primitives = primitives
         self.contacts = contacts
-        self._ties = Ties(primitives, contacts)
+        self._ties = Ties(primitives, contacts, candidates or AllObjects(primitives.object_count))
 
     def closest(self, ray: Ray, active: Any) -> Hit:
         """The first surface that a ray meets, the point moved onto it to shed the error along the normal."""
@@ -30,17 +31,20 @@ class ExactSurfaces:
         if ties:
             t, index, primitive = self._ties.closest(ray, t, index, primitive, active & close)
         valid = active & (index != NOTHING)
-        p = type(ray.o)(ray.o + t * ray.d)
-        surface = self.primitives.surface_at(ray, index, primitive, p, valid, largest(ray.o))
-        p, n = surface.p, surface.n
+        moving, ray = ray, self.primitives.at_rest(ray, index, valid)
+        near = type(ray.o)(ray.o + t * ray.d)
+        surface = self.primitives.surface_at(ray, index, primitive, near, valid, largest(ray.o))
+        place, n = surface.p, surface.n
         inside = dr.select(index == ray.object, ray.inside, dr.dot(n, ray.d) > 0)
         off = ray.t_min + surface.error + t * ray.spread
-        error = origin_error(p, t)
+        error = origin_error(place, t)
         if ties:
             # A ray that is off meets the surface farther off the more it slants.
             along = quotient(off, dr.abs(dr.dot(n, ray.d)))
-            error += dr.minimum(along, most_blur(t) * (largest(p) + t))
-        return Hit(valid, t, index, primitive, p, n, inside, off, error, quotient(error, surface.radius))
+            error += dr.minimum(along, most_blur(t) * (largest(place) + t))
+        lean = quotient(error, surface.radius)
+        p, error = self.primitives.taken_along(moving, index, place, error, valid)
+        return Hit(valid, t, index, primitive, p, n, inside, off, error, lean, place, ray.time)
 
     def spawn(self, hit: Hit, d: Any, inside: Any, spread: Any) -> Ray:
         """The ray that leaves `hit` in direction `d`, on the given side of the object."""

@@ -1,7 +1,7 @@
 """The same searches as everywhere, by the format's rules for ties, for the rays that are close to some."""
 
-from dataclasses import replace
-from typing import Any
+from dataclasses import dataclass, replace
+from typing import Any, Protocol
 
 import drjit as dr
 import mitsuba as mi
@@ -13,54 +13,108 @@ from mitsuba_plugins.intersection.rays import NOTHING, Ray, largest
 from mitsuba_plugins.intersection.rounding import most_blur
 
 
-class Ties:
-    """Searches all objects in turn."""
+class Candidates(Protocol):
+    """Which objects rays may meet, in any order; a `BoxTree` is one."""
 
-    def __init__(self, primitives: Primitives, contacts: LightContacts) -> None:
+    def walk(self, ray: Ray, ties: bool) -> Any:
+        """What `next` needs of rays; its `start` is the first node."""
+
+    def limit(self, distance: Any) -> Any:
+        """A distance as `next` takes it."""
+
+    def next(self, walk: Any, node: Any, limit: Any, skipped: Any, active: Any) -> tuple[Any, Any]:
+        """The next object, from `node` (UInt32) on, that may be met before `limit`, or NOTHING, and where to go on."""
+
+
+@dataclass
+class _Turns:
+    start: Any  # UInt32
+
+
+class AllObjects:
+    """All objects in turn: of a few, as fast as any search."""
+
+    def __init__(self, count: Any) -> None:
+        self._count = count
+
+    def walk(self, ray: Ray, ties: bool) -> _Turns:
+        """As `Candidates` has it."""
+        return _Turns(dr.zeros(mi.UInt32, dr.width(ray.d)))
+
+    def limit(self, distance: Any) -> Any:
+        """As `Candidates` has it."""
+        return distance
+
+    def next(self, walk: _Turns, node: Any, limit: Any, skipped: Any, active: Any) -> tuple[Any, Any]:
+        """As `Candidates` has it."""
+        return dr.select(node < self._count, node, NOTHING), node + 1
+
+
+class Ties:
+    """Searches objects in any order, and answers as if there were none."""
+
+    def __init__(self, primitives: Primitives, contacts: LightContacts, candidates: Candidates) -> None:
         self._primitives = primitives
         self._contacts = contacts
+        self._candidates = candidates
 
     @dr.syntax
     def closest(self, ray: Ray, t: Any, index: Any, primitive: Any, close: Any) -> tuple[Any, Any, Any]:
         """Distance, object and primitive of the first hit: where rays are not close to a tie as they were found."""
         if close:
             width = dr.width(close)
-            count = self._primitives.object_count
+            nobody = dr.full(mi.UInt32, NOTHING, width)
+            walk = self._candidates.walk(ray, ties=True)
             # The first object of those that tie with the nearest: also where one ties with two that do not tie with one
             # another, the order in which they are visited does not matter.
             nearest = dr.full(type(t), dr.inf, width)
             error = dr.zeros(type(t), width)
-            tested = dr.zeros(mi.UInt32, width)
-            while close & (tested < count):
-                met = self._intersect(ray, tested, close)
-                error = dr.select((met.t < nearest) | ((met.t == nearest) & (met.error > error)), met.error, error)
-                nearest = dr.minimum(met.t, nearest)
-                tested += 1
+            node = mi.UInt32(walk.start)
+            searching = mi.Bool(close)
+            while searching:
+                tested, node = self._candidates.next(walk, node, self._limit(ray, nearest), nobody, searching)
+                searching &= tested != NOTHING
+                met = self._intersect(ray, tested, searching)
+                nearer = searching & ((met.t < nearest) | ((met.t == nearest) & (met.error > error)))
+                error = dr.select(nearer, met.error, error)
+                nearest = dr.select(nearer, met.t, nearest)
             t = dr.full(type(t), dr.inf, width)
             index = dr.full(mi.UInt32, NOTHING, width)
             primitive = dr.zeros(mi.UInt32, width)
-            tested = dr.zeros(mi.UInt32, width)
-            while close & (tested < count) & (index == NOTHING):
-                met = self._intersect(ray, tested, close)
-                ties = (met.t < dr.inf) & (met.t - nearest <= error + met.error)
-                t = dr.select(ties, met.t, t)
-                index = dr.select(ties, tested, index)
-                primitive = dr.select(ties, met.primitive, primitive)
-                tested += 1
+            node = mi.UInt32(walk.start)
+            searching = close & (nearest < dr.inf)
+            while searching:
+                tested, node = self._candidates.next(walk, node, self._limit(ray, nearest), nobody, searching)
+                searching &= tested != NOTHING
+                met = self._intersect(ray, tested, searching)
+                first = searching & (met.t < dr.inf) & (met.t - nearest <= error + met.error) & (tested < index)
+                t = dr.select(first, met.t, t)
+                index = dr.select(first, tested, index)
+                primitive = dr.select(first, met.primitive, primitive)
         return t, index, primitive
 
     @dr.syntax
     def blocker(self, ray: Ray, distance: Any, light: Any, found: Any, close: Any) -> Any:
         """Some object before a light at `distance`, or NOTHING; where rays are not close to a tie what was found."""
         if close:
-            found = dr.full(mi.UInt32, NOTHING, dr.width(close))
-            tested = dr.zeros(mi.UInt32, dr.width(close))
-            while close & (tested < self._primitives.object_count) & (found == NOTHING):
-                met = self._intersect(ray, tested, close)
-                blocks = (met.t < distance) & ~self._contacts.lies_at(light, met, ray.d, close)
+            width = dr.width(close)
+            nobody = dr.full(mi.UInt32, NOTHING, width)
+            found = dr.full(mi.UInt32, NOTHING, width)
+            walk = self._candidates.walk(ray, ties=True)
+            node = mi.UInt32(walk.start)
+            searching = mi.Bool(close)
+            while searching:
+                tested, node = self._candidates.next(walk, node, self._limit(ray, distance), nobody, searching)
+                searching &= tested != NOTHING
+                met = self._intersect(ray, tested, searching)
+                blocks = searching & (met.t < distance) & ~self._contacts.lies_at(light, met, ray.d, searching)
                 found = dr.select(blocks, tested, found)
-                tested += 1
+                searching &= ~blocks
         return found
+
+    def _limit(self, ray: Ray, distance: Any) -> Any:
+        """Beyond which nothing ties with what is met at a distance."""
+        return self._candidates.limit(distance + 4 * most_blur(distance) * (distance + largest(ray.o)))
 
     def _intersect(self, ray: Ray, index: Any, active: Any) -> Crossing:
         """Where rays cross an object by the rules, at an infinite distance if nowhere."""

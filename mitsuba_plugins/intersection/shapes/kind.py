@@ -104,6 +104,12 @@ class ShapeKind(Protocol):
         """Whether a shape, its primitives as given, contains a point, as far as decimals can say."""
         ...
 
+    def slides(self, move: Any, row: Any) -> bool:
+        """Whether a primitive as given, moved by a displacement (3,), lies in itself, as far as decimals can say: then
+        what lies on it does so while it moves.
+        """
+        ...
+
     # ---- In a kernel: `own` where the ray starts on the shape, `reach` the largest coordinate of its origin
 
     def passage(self, rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:

@@ -50,6 +50,11 @@ def contains(point: Any, rows: Any) -> bool:
     return within(point, rows)
 
 
+def slides(move: Any, row: Any) -> bool:
+    """Along its plane."""
+    return bool(surfaces_at(move, [[*row[:3], 0]], [False]))
+
+
 @dataclass
 class _Span:
     """The part of a line that lies inside the half-spaces seen so far."""

@@ -31,6 +31,7 @@ from mitsuba_plugins.intersection.passages import Passage
 from mitsuba_plugins.intersection.rays import Ray, largest
 from mitsuba_plugins.intersection.rounding import epsilon, input_error, least_spread, most_blur
 from mitsuba_plugins.intersection.shapes.kind import Contact, Row, Rows, Shape, SurfacePoint
+from native_tracer.incidence import surfaces_at
 
 ROWS = 4
 FACETED = False
@@ -70,6 +71,17 @@ def contains(point: Any, rows: Any) -> bool:
     half = form.half_gradient(q)
     value = sum((x * (h + g) for x, h, g in zip(q, half, form.g, strict=True)), form.k)
     return value <= 0 or _contact(point, rows[0], 0) is not None
+
+
+def slides(move: Any, row: Any) -> bool:
+    """A cylinder does along itself, and a plane.
+
+    A moved point's value is another by the gradient's product with the displacement, halfway along it: at all points if
+    what multiplies each coordinate, and the rest, is 0.
+    """
+    a, b, c, d, e, f, g, h, i, _ = row
+    factors = [[2 * a, d, e, 0], [d, 2 * b, f, 0], [e, f, 2 * c, 0], [g, h, i, 0]]
+    return len(surfaces_at(move, factors, [False] * 4)) == len(factors)
 
 
 @dataclass(frozen=True)

@@ -49,6 +49,11 @@ def contains(point: Any, rows: Any) -> bool:
     return math.dist(point, (x, y, z)) <= radius or bool(contacts(point, rows))
 
 
+def slides(move: Any, row: Any) -> bool:
+    """None does."""
+    return False
+
+
 def passage(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
     """Both roots, from the centre; those that nearly touch are close to a tie."""
     row = rows.row()

@@ -16,6 +16,7 @@
 #include <stdexcept>
 #include <string>
 #include <utility>
+#include <variant>
 #include <vector>
 
 #include "binding/bindings.h"
@@ -201,6 +202,10 @@ nb::dict trace_pixel(const SceneDescription& scene, int width, int height, int x
     record_pixel(scene, settings, x, y, color.data(), tree);
     const std::vector<RayRecord>& rays = tree.records();
 
+    const bool moves = std::any_of(scene.objects.begin(), scene.objects.end(), [](const ObjectDescription& object) {
+        return std::holds_alternative<MovingDescription>(object.shape);
+    });
+
     std::vector<nb::dict> nodes(rays.size());
     std::vector<Triple> radiance(rays.size());
     std::vector<nb::list> children(rays.size());
@@ -228,6 +233,9 @@ nb::dict trace_pixel(const SceneDescription& scene, int width, int height, int x
         node["depth"] = ray.depth;
         node["origin"] = tuple_of(ray.origin);
         node["direction"] = tuple_of(ray.direction);
+        if (moves) {
+            node["time"] = ray.time;
+        }
         node["hit"] = hit_of(ray);
         node["local"] = tuple_of(ray.local);
         node["dropped"] = dropped_of(ray);

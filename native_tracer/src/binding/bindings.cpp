@@ -14,7 +14,9 @@
 #include <cmath>
 #include <stdexcept>
 #include <string>
+#include <type_traits>
 #include <utility>
+#include <variant>
 
 #include "shapes/simplified_csg.h"
 #include "tracing/description.h"
@@ -152,6 +154,21 @@ int add_csg(SceneDescription& scene, int pigment, int finish,
     return add_object(scene, pigment, finish, whitted::simplified(csg));
 }
 
+void move_object(SceneDescription& scene, int index, const Triple& displacement) {
+    check_index(index, scene.objects.size(), "object");
+    whitted::ShapeDescription& shape = scene.objects[static_cast<std::size_t>(index)].shape;
+    finite(displacement, "displacement");
+    shape = std::visit(
+        [&](auto& still) -> whitted::MovingDescription {
+            if constexpr (std::is_same_v<std::decay_t<decltype(still)>, whitted::MovingDescription>) {
+                return {std::move(still.body), displacement};
+            } else {
+                return {std::move(still), displacement};
+            }
+        },
+        shape);
+}
+
 int add_texmap(SceneDescription& scene, int width, int height, const TexelBuffer& texels, const Quadruple& p0,
                const Quadruple& p1) {
     if (width <= 0 || height <= 0 ||
@@ -267,7 +284,9 @@ void bind_scene(nb::module_& module) {
         .def("add_csg", &add_csg, "pigment"_a, "finish"_a, "leaves"_a, "program"_a,
              "Add constructive solid geometry, and return its index. A leaf is ('sphere', (x, y, z, radius)),\n"
              "('polyhedron', planes) or ('quadric', coefficients); the program is a Boolean expression in postfix\n"
-             "order: k >= 0 pushes leaf k, -1 unites the last two, -2 subtracts, -3 intersects them.");
+             "order: k >= 0 pushes leaf k, -1 unites the last two, -2 subtracts, -3 intersects them.")
+        .def("move_object", &move_object, "index"_a, "displacement"_a,
+             "Let an object, its pigment too, move by a displacement while the picture is taken.");
 }
 
 NB_MODULE(_core, module) {

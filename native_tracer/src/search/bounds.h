@@ -22,6 +22,7 @@ std::optional<Bounds> bounds_of(const SphereDescription& sphere);
 std::optional<Bounds> bounds_of(const PolyhedronDescription& polyhedron);
 std::optional<Bounds> bounds_of(const QuadricDescription& quadric);
 std::optional<Bounds> bounds_of(const CsgDescription& csg);
+std::optional<Bounds> bounds_of(const MovingDescription& moving);  // wherever the body is
 
 // The cost of a ray's test, in tests of spheres. Two planes of a polyhedron cost about as much as one.
 inline double cost_of(const SphereDescription&) { return 1; }
@@ -30,5 +31,6 @@ inline double cost_of(const PolyhedronDescription& polyhedron) {
 }
 inline double cost_of(const QuadricDescription&) { return 2; }
 double cost_of(const CsgDescription& csg);
+double cost_of(const MovingDescription& moving);
 
 }  // namespace whitted

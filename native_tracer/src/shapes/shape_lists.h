@@ -64,6 +64,12 @@ class ShapeLists {
         });
     }
 
+    // A shape of which the kind is known.
+    template <typename Kind>
+    const Kind& at(ShapeIndex place) const {
+        return std::get<std::vector<Kind>>(lists_)[place.index];
+    }
+
     // visit(shape, description), for the description that the shape was made from.
     template <typename Visit>
     void visit(ShapeIndex place, const Description& description, Visit visit) const {

@@ -9,5 +9,7 @@ template class Quadric<float>;
 template class Quadric<double>;
 template class Csg<float>;
 template class Csg<double>;
+template class Moving<float>;
+template class Moving<double>;
 
 }  // namespace whitted::WHITTED_ISA

@@ -23,6 +23,8 @@
 //                               through these that miss it: may_be_hit by rays from there; may_block rays that lead
 //                               there
 //
+// All rays that it is asked about are at rest, see moving.h.
+//
 // Outside the kernels a description has its bounds, in search.cpp, and says what lies on it, in incidence.h.
 
 #pragma once
@@ -31,6 +33,7 @@
 
 #include "shapes/convex_polyhedron.h"
 #include "shapes/csg.h"
+#include "shapes/moving.h"
 #include "shapes/quadric.h"
 #include "shapes/shape_lists.h"
 #include "shapes/sphere.h"
@@ -39,7 +42,7 @@
 namespace whitted::WHITTED_ISA {
 
 template <typename Real>
-using Shapes = ShapeLists<Real, Sphere<Real>, ConvexPolyhedron<Real>, Quadric<Real>, Csg<Real>>;
+using Shapes = ShapeLists<Real, Sphere<Real>, ConvexPolyhedron<Real>, Quadric<Real>, Csg<Real>, Moving<Real>>;
 
 static_assert(std::is_same_v<Shapes<double>::Description, ShapeDescription>,
               "every alternative of ShapeDescription has its shape, in the same order");

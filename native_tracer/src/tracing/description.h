@@ -81,7 +81,16 @@ struct CsgDescription {
 inline constexpr std::size_t most_csg_leaves = 64;
 inline constexpr std::size_t deepest_csg_stack = 64;  // of an expression that is worked out
 
-using ShapeDescription = std::variant<SphereDescription, PolyhedronDescription, QuadricDescription, CsgDescription>;
+using BodyDescription = std::variant<SphereDescription, PolyhedronDescription, QuadricDescription, CsgDescription>;
+
+// A body that at time u, from 0 to 1, stands at its place plus u times its displacement.
+struct MovingDescription {
+    BodyDescription body;
+    Triple displacement;
+};
+
+using ShapeDescription =
+    std::variant<SphereDescription, PolyhedronDescription, QuadricDescription, CsgDescription, MovingDescription>;
 
 struct ObjectDescription {
     int pigment, finish;

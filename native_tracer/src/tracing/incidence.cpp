@@ -3,7 +3,9 @@
 #include <algorithm>
 #include <cmath>
 #include <cstddef>
+#include <iterator>
 #include <limits>
+#include <variant>
 
 namespace whitted {
 
@@ -67,6 +69,35 @@ bool lies_on(const QuadricDescription& quadric, const Triple& point) {
     add(q[8] * z, 2);
     add(q[9], 1);
     return std::abs(value) <= rounding * sum;
+}
+
+bool slides(const SphereDescription&, int, const Triple&) { return false; }
+
+bool slides(const PolyhedronDescription& polyhedron, int piece, const Triple& displacement) {
+    const Quadruple& plane = polyhedron.planes[static_cast<std::size_t>(piece)];
+    return lies_on(Quadruple{plane[0], plane[1], plane[2], 0}, displacement);
+}
+
+// A moved point's value is another by the gradient's product with the displacement, halfway along it: at all points if
+// what multiplies each coordinate, and the rest, is 0.
+bool slides(const QuadricDescription& quadric, int, const Triple& displacement) {
+    const auto& q = quadric.coefficients;
+    const Quadruple factors[4] = {
+        {2 * q[0], q[3], q[4], 0}, {q[3], 2 * q[1], q[5], 0}, {q[4], q[5], 2 * q[2], 0}, {q[6], q[7], q[8], 0}};
+    return std::all_of(std::begin(factors), std::end(factors),
+                       [&](const Quadruple& factor) { return lies_on(factor, displacement); });
+}
+
+bool slides(const CsgDescription& csg, int piece, const Triple& displacement) {
+    for (const LeafDescription& leaf : csg.leaves) {
+        const auto* polyhedron = std::get_if<PolyhedronDescription>(&leaf);
+        const int pieces = polyhedron != nullptr ? static_cast<int>(polyhedron->planes.size()) : 1;
+        if (piece < pieces) {
+            return std::visit([&](const auto& shape) { return slides(shape, piece, displacement); }, leaf);
+        }
+        piece -= pieces;
+    }
+    return false;
 }
 
 bool lies_within(const std::vector<Quadruple>& planes, const Triple& point) {

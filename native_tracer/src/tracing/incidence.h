@@ -17,6 +17,13 @@ bool lies_on(const SphereDescription& sphere, const Triple& point);
 bool lies_on(const Quadruple& plane, const Triple& point);
 bool lies_on(const QuadricDescription& quadric, const Triple& point);
 
+// Whether a primitive of a shape, see shapes.h, moved by a displacement lies in itself, as far as decimals can say:
+// then what lies on it does so while it moves.
+bool slides(const SphereDescription& sphere, int piece, const Triple& displacement);
+bool slides(const PolyhedronDescription& polyhedron, int piece, const Triple& displacement);
+bool slides(const QuadricDescription& quadric, int piece, const Triple& displacement);
+bool slides(const CsgDescription& csg, int piece, const Triple& displacement);
+
 // Whether the point lies in the half-spaces of all planes, or on their borders.
 bool lies_within(const std::vector<Quadruple>& planes, const Triple& point);
 

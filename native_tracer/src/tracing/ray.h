@@ -21,6 +21,7 @@ struct Rays {
     Mask<Real> inside;                      // it travels inside `object`
     Lanes<Real> spread;                     // how far the direction may be off, see rounding.h
     Lanes<Real> reach;                      // no coordinate of the origin is larger
+    Lanes<Real> time = Real(0);             // from 0 to 1, where something moves
 };
 
 // A bound of the rounding error of points found at distance t of their rays, `reach` being their largest coordinate.

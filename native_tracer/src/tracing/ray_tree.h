@@ -30,6 +30,7 @@ struct RayRecord {
     int depth = 0;
     double weight = 1;
     Triple origin{}, direction{};
+    double time = 0;
 
     int object = -1, plane = -1;  // what it hits; -1: nothing, and no polyhedron
     double t = 0;

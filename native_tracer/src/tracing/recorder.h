@@ -114,6 +114,7 @@ class Recorder {
             record.weight = static_cast<double>(group.weight[lane]);
             record.origin = triple(lane_of(group.rays.origin, lane));
             record.direction = triple(lane_of(group.rays.direction, lane));
+            record.time = static_cast<double>(group.rays.time[lane]);
             return index;
         });
     }

@@ -68,6 +68,7 @@ struct Object {
     const Pigment<Real>* pigment;
     int first_primitive;
     ShapeIndex shape;
+    bool moves = false;
 };
 
 template <typename Real>
@@ -109,6 +110,7 @@ template <typename Real>
 struct Scene {
     Color<Real> ambient, background;
     bool sampled = false;  // something is random
+    bool moves = false;    // rays have a time
     bool spreads = false;  // some finish spreads rays
     View<Real> eye_view;
     EyeContact<Real> eye_contact;  // of a camera without a lens
@@ -211,7 +213,8 @@ struct Scene {
             }
             const Object<Real>& object = objects[static_cast<std::size_t>(hits.object[lane])];
             return shapes.visit(object.shape, [&](const auto& shape) {
-                return shape.primitive_met(rays, lane, hits.primitive[lane], hits.t[lane], hits.inside[lane]);
+                return shape.primitive_met(at_rest(shape, rays), lane, hits.primitive[lane], hits.t[lane],
+                                           hits.inside[lane]);
             });
         });
         return hits;
@@ -250,7 +253,9 @@ struct Scene {
 
     // How far the distances of crossings may be off.
     template <typename Shape>
-    static Lanes<Real> distance_errors(const Shape& shape, const Rays<Real>& rays, const Crossing<Real>& crossing) {
+    static Lanes<Real> distance_errors(const Shape& shape, const Rays<Real>& world_rays,
+                                       const Crossing<Real>& crossing) {
+        const Rays<Real>& rays = at_rest(shape, world_rays);
         return Lanes<Real>::gather([&](int lane) {
             const Real t = crossing.t[lane];
             if (!std::isfinite(t)) {
@@ -272,11 +277,12 @@ struct Scene {
                                                   const View<Real>* view, MayHit may_hit, Visit visit) const {
         const auto cross = [&](const auto& shape) __attribute__((always_inline)) {
             Crossing<Real> crossing;  // of its own, so that it stays in registers but for calls that need it elsewhere
+            const Rays<Real>& resting = at_rest(shape, rays);
             bool crosses;
             if constexpr (ties == Ties::decided) {
-                crosses = shape.intersect_by_rules(rays, crossing);
+                crosses = shape.intersect_by_rules(resting, crossing);
             } else {
-                crosses = shape.template intersect<ties == Ties::found>(rays, crossing, close);
+                crosses = shape.template intersect<ties == Ties::found>(resting, crossing, close);
             }
             return !crosses || visit(shape, crossing);
         };
@@ -306,6 +312,7 @@ Scene<Real>::Scene(const SceneDescription& description, const SearchPlan& plan)
     }
     add_objects(description);
     add_shapes(description, plan);
+    sampled |= moves;
     add_eye(description);
     for (const LightDescription& light : description.lights) {
         add_light(description, light);
@@ -337,7 +344,10 @@ void Scene<Real>::add_shapes(const SceneDescription& description, const SearchPl
     const auto add = [&](int number) {
         const auto index = static_cast<std::size_t>(number);
         Object<Real>& object = objects[index];
-        object.shape = shapes.add(description.objects[index].shape, number, object.first_primitive);
+        const ShapeDescription& shape = description.objects[index].shape;
+        object.shape = shapes.add(shape, number, object.first_primitive);
+        object.moves = std::get_if<MovingDescription>(&shape) != nullptr;
+        moves |= object.moves;
     };
     for (const int object : plan.apart) {
         add(object);

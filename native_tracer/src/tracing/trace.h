@@ -74,8 +74,14 @@ class Tracer {
     };
 
     void trace_group(const Group<Real>& group, const View<Real>* view = nullptr);
+    void set_time(Group<Real>& group) const;
     Surface<Real> surface_at(const Rays<Real>& rays, const Hits<Real>& hits) const;
+    void meet(const Object<Real>& object, int primitive, const Rays<Real>& rays, const Hits<Real>& hits,
+              Mask<Real> which, const Vector<L>& near, Surface<Real>& surface) const;
+    void meet_moving(const Object<Real>& object, int primitive, const Rays<Real>& rays, const Hits<Real>& hits,
+                     Mask<Real> which, Surface<Real>& surface) const;
     PlanePoint<Real> sample(const Group<Real>& group, std::uint32_t use) const;
+    PlanePoint<Real> sample(const Group<Real>& group, Indices<Real> path, std::uint32_t use) const;
     Vector<L> to_disc(const Group<Real>& group, std::size_t light, const Vector<L>& center, L& error) const;
     Color<L> local_color(const Group<Real>& group, const Hits<Real>& hits, const Surface<Real>& surface);
     L highlight(const Rays<Real>& rays, const Hits<Real>& hits, const Surface<Real>& surface, const Vector<L>& to_light,
@@ -122,6 +128,7 @@ bool Tracer<Real, Observer>::trace(PrimaryRays primary_rays, Color<Sum>* sums, R
             std::size_t traced = 0;
             do {
                 Group<Real> group = primary_rays.next();
+                set_time(group);
                 if (primary_rays.have_lens()) [[unlikely]] {
                     const PlanePoint<Real> square = sample(group, use::lens);
                     primary_rays.move_to_lens(group, disc_point(square.x, square.y));
@@ -136,7 +143,9 @@ bool Tracer<Real, Observer>::trace(PrimaryRays primary_rays, Color<Sum>* sums, R
             reflected_.move_last(batch_size, batch_);
             transmitted_.move_last(batch_size - batch_.size(), batch_);
             for (std::size_t first = 0; first < batch_.size(); first += lane_count<Real>) {
-                trace_group(batch_.group(first));
+                Group<Real> group = batch_.group(first);
+                set_time(group);
+                trace_group(group);
             }
         } else {
             counts.pixels_too_deep += static_cast<std::uint64_t>(
@@ -166,6 +175,14 @@ void Tracer<Real, Observer>::trace_group(const Group<Real>& group, const View<Re
     }
 }
 
+// A ray has the time of the primary ray that it follows from.
+template <typename Real, typename Observer>
+void Tracer<Real, Observer>::set_time(Group<Real>& group) const {
+    if (scene_.moves) [[unlikely]] {
+        group.rays.time = sample(group, Indices<Real>(static_cast<int>(primary_path)), use::time).x;
+    }
+}
+
 template <typename Real, typename Observer>
 Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const Hits<Real>& hits) const {
     const Vector<L> p = rays.origin + hits.t * rays.direction;
@@ -179,30 +196,12 @@ Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const H
         Surface<Real>& surface = first ? result : another;
         surface.hit = hit;
 
-        const auto moved = scene_.shapes.visit(object.shape, [&](const auto& shape) __attribute__((always_inline)) {
-            return shape.surface_at(primitive, p, rays, hits.inside);
-        });
-        surface.point = moved.point;
-        surface.outward = moved.outward;
-        surface.normal = select(hits.inside, -surface.outward, surface.outward);
-        const L reach = max_norm(surface.point);
-        const L off = decides_ties<Real> ? rays.t_min + moved.error + hits.t * rays.spread : L(Real(0));
-        const L blur = L(most_blur<Real>) * (reach + hits.t);
-        // A ray that is off meets the surface farther off the more it slants.
-        const L along = min(off / abs(dot(surface.outward, rays.direction)), blur);
-        surface.error = rounding_error(reach, hits.t) + along;
-        surface.lean = moved.curvature * surface.error;
-        const Meeting<Real> met{surface.point, surface.outward, rays.direction, off, blur};
-        surface.pigment = color_at(*object.pigment, met);
-        observer_.pigment(*object.pigment, met, first ? hit : same);
-        const Finish<Real>& finish = object.finish;
-        surface.ka = finish.ka;
-        surface.kd = finish.kd;
-        surface.ks = finish.ks;
-        surface.alpha = finish.alpha;
-        surface.kr = finish.kr;
-        surface.kt = finish.kt;
-        surface.eta = finish.eta;
+        const Mask<Real> which = first ? hit : same;
+        if (object.moves) [[unlikely]] {
+            meet_moving(object, primitive, rays, hits, which, surface);
+        } else {
+            meet(object, primitive, rays, hits, which, p, surface);
+        }
 
         if (!first) {
             merge(same, another, result);
@@ -210,6 +209,49 @@ Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const H
         first = false;
     });
     return result;
+}
+
+// The points that the lanes in `which` have met, near an object that stands still.
+template <typename Real, typename Observer>
+[[gnu::always_inline]] inline void Tracer<Real, Observer>::meet(const Object<Real>& object, int primitive,
+                                                                const Rays<Real>& rays, const Hits<Real>& hits,
+                                                                Mask<Real> which, const Vector<L>& near,
+                                                                Surface<Real>& surface) const {
+    const auto moved = scene_.shapes.visit(object.shape, [&](const auto& shape) __attribute__((always_inline)) {
+        return shape.surface_at(primitive, near, rays, hits.inside);
+    });
+    surface.point = moved.point;
+    surface.outward = moved.outward;
+    surface.normal = select(hits.inside, -surface.outward, surface.outward);
+    const L reach = max_norm(surface.point);
+    const L off = decides_ties<Real> ? rays.t_min + moved.error + hits.t * rays.spread : L(Real(0));
+    const L blur = L(most_blur<Real>) * (reach + hits.t);
+    // A ray that is off meets the surface farther off the more it slants.
+    const L along = min(off / abs(dot(surface.outward, rays.direction)), blur);
+    surface.error = rounding_error(reach, hits.t) + along;
+    surface.lean = moved.curvature * surface.error;
+    const Meeting<Real> met{surface.point, surface.outward, rays.direction, off, blur};
+    surface.pigment = color_at(*object.pigment, met);
+    observer_.pigment(*object.pigment, met, which);
+    const Finish<Real>& finish = object.finish;
+    surface.ka = finish.ka;
+    surface.kd = finish.kd;
+    surface.ks = finish.ks;
+    surface.alpha = finish.alpha;
+    surface.kr = finish.kr;
+    surface.kt = finish.kt;
+    surface.eta = finish.eta;
+}
+
+// Where the object stands still, and taken along from there.
+template <typename Real, typename Observer>
+[[gnu::noinline]] void Tracer<Real, Observer>::meet_moving(const Object<Real>& object, int primitive,
+                                                           const Rays<Real>& rays, const Hits<Real>& hits,
+                                                           Mask<Real> which, Surface<Real>& surface) const {
+    const Moving<Real>& moving = scene_.shapes.template at<Moving<Real>>(object.shape);
+    const Rays<Real> resting = moving.bring_back(rays);
+    meet(object, primitive, resting, hits, which, resting.origin + hits.t * resting.direction, surface);
+    moving.take_along(rays.time, surface.point, surface.error);
 }
 
 // ---- Local colour -------------------------------------------------------------------------------------------------
@@ -226,8 +268,8 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
     }
     // Shadow rays start on the viewer's side of the surface, as the reflected ray does.
     const L reach = max_norm(surface.point);
-    Rays<Real> shadow_rays{surface.point,  surface.normal, surface.error,         hits.object,
-                           hits.primitive, hits.inside,    L(least_spread<Real>), reach};
+    Rays<Real> shadow_rays{surface.point, surface.normal,        surface.error, hits.object,    hits.primitive,
+                           hits.inside,   L(least_spread<Real>), reach,         group.rays.time};
     const L point_error = L(8 * tie_epsilon<Real>) * reach;
     for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
         const Light<Real>& light = scene_.lights[i];
@@ -274,13 +316,19 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
 // The rays' points of the unit square for one use.
 template <typename Real, typename Observer>
 PlanePoint<Real> Tracer<Real, Observer>::sample(const Group<Real>& group, std::uint32_t use) const {
+    return sample(group, group.path, use);
+}
+
+// Those of the rays with such paths in the trees of a group's rays.
+template <typename Real, typename Observer>
+PlanePoint<Real> Tracer<Real, Observer>::sample(const Group<Real>& group, Indices<Real> path, std::uint32_t use) const {
     SampleNames<Real> names{};
     for (unsigned lanes = group.active.bits(); lanes != 0; lanes &= lanes - 1) {
         const int lane = std::countr_zero(lanes);
         const auto at = static_cast<std::size_t>(lane);
         names.pixel_key[at] = pixel_keys_[static_cast<std::size_t>(group.pixel[lane])].value;
         names.number[at] = static_cast<std::uint32_t>(group.sample[lane]);
-        names.path[at] = static_cast<std::uint32_t>(group.path[lane]);
+        names.path[at] = static_cast<std::uint32_t>(path[lane]);
     }
     return square_point(names, use);
 }
@@ -330,6 +378,7 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
     Group<Real> successors;
     successors.rays.origin = surface.point;
     successors.rays.t_min = surface.error;
+    successors.rays.time = group.rays.time;
     successors.rays.object = hits.object;
     successors.rays.primitive = hits.primitive;
     successors.depth = group.depth + Indices<Real>(1);

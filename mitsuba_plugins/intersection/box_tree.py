@@ -1,0 +1,138 @@
+"""A tree of boxes about any number of surfaces, wherever they move, which says which of them rays may meet.
+
+It is walked without a stack: its nodes lie in depth-first order, each with a link to the node that follows where its
+box is missed. There is one such order for every octant of directions, in which of two children the nearer comes first.
+Smits, Efficiency Issues for Ray Tracing, Journal of Graphics Tools 3(2), 1998.
+"""
+
+import math
+from dataclasses import dataclass
+from typing import Any
+
+import drjit as dr
+import mitsuba as mi
+import numpy as np
+
+from mitsuba_plugins.arithmetic import quotient
+from mitsuba_plugins.intersection.columns import column
+from mitsuba_plugins.intersection.geometry import Surface
+from mitsuba_plugins.intersection.rays import NOTHING, Ray, Real, largest
+from native_tracer.bvh import threaded_bvh
+
+SLACK = 2.0**-20
+"""By how much, relatively, a distance to a box may be wrong: some roundings to single precision."""
+TIE_MARGIN = 2.0**-24
+"""By how much, relative to the tree and the ray's origin, boxes are wider for what ties with a hit."""
+
+_LARGEST_EXPONENT = 1023
+"""Of a power of two that is a double."""
+
+
+@dataclass
+class Walk:
+    """How rays pass through a tree: what does not depend on the node. Lengths are times the tree's scale."""
+
+    origin: Any  # Vector3f, with `remainder`, as a sum of two single-precision numbers, so that differences to it
+    remainder: Any  # Vector3f; are wrong by a share of themselves and no more
+    slope: Any  # Vector3f, the reciprocal of the direction
+    start: Any  # UInt32, the first node
+    end: Any  # UInt32, behind the last node
+    margin: Any  # Float, by how much boxes are wider, or None
+
+
+class BoxTree:
+    """Single-precision boxes, which are rounded outward: what they let through is exact."""
+
+    def __init__(self, types: Real, surfaces: list[Surface]) -> None:
+        self._types = types
+        scale = _scale(surfaces)
+        self._scale = types.Float(scale)
+        self._nodes, self._node_count = _nodes(surfaces, scale)
+        dr.make_opaque(self._node_count, self._scale)
+
+    def walk(self, ray: Ray, ties: bool) -> Walk:
+        """How rays pass through the tree; where there may be ties, boxes that they miss by a little count as met."""
+        scaled = ray.o * self._scale
+        origin = mi.Vector3f(scaled)
+        start = _octant(ray.d) * self._node_count
+        return Walk(
+            origin,
+            mi.Vector3f(scaled - self._types.Point3(origin)),
+            quotient(1, mi.Vector3f(ray.d)),
+            start,
+            start + self._node_count,
+            (largest(origin) + 1) * TIE_MARGIN if ties else None,
+        )
+
+    def limit(self, distance: Any) -> Any:
+        """A distance as `next` takes it, and a little more."""
+        return mi.Float(distance * self._scale) * (1 + SLACK)
+
+    @dr.syntax
+    def next(self, walk: Walk, node: Any, limit: Any, skipped: Any, active: Any) -> tuple[Any, Any]:
+        """The next object, from `node` on, whose box rays enter before `limit`, or NOTHING, and the node to go on at.
+
+        All rays walk until each is at a leaf, so that they are tested against surfaces together. The object `skipped`
+        is passed over.
+        """
+        index = dr.full(mi.UInt32, NOTHING, dr.width(walk.slope))
+        walking = active & (node < walk.end)
+        while walking:
+            corners = dr.gather(mi.Array4f, self._nodes, 2 * node, walking)
+            rest = dr.gather(mi.Array4f, self._nodes, 2 * node + 1, walking)
+            to_near = (mi.Vector3f(corners.xyz) - walk.origin) - walk.remainder
+            to_far = (mi.Vector3f(corners.w, rest.x, rest.y) - walk.origin) - walk.remainder
+            if dr.hint(walk.margin is not None, mode="scalar"):
+                outward = dr.mulsign(mi.Vector3f(walk.margin), walk.slope)
+                to_near, to_far = to_near - outward, to_far + outward
+            near, far = dr.max(to_near * walk.slope), dr.min(to_far * walk.slope)
+            # A NaN comes from a ray within a side of a box, which contains nothing: no comparison holds.
+            meets = (near <= dr.minimum(far * (1 + SLACK), limit)) & (far >= 0)
+            item = dr.reinterpret_array(mi.UInt32, rest.w)
+            index = dr.select(walking & meets & (item != skipped), item, index)
+            following = walk.start + dr.reinterpret_array(mi.UInt32, rest.z)
+            node = dr.select(meets & (item == NOTHING), node + 1, following)
+            walking &= (index == NOTHING) & (node < walk.end)
+        return index, node
+
+
+def _octant(d: Any) -> Any:
+    """Which components of a direction are negative, a bit each."""
+    return sum(dr.select(component < 0, mi.UInt32(1 << axis), 0) for axis, component in enumerate(d))
+
+
+def _scale(surfaces: list[Surface]) -> float:
+    """A power of two that makes the boxes so large that single precision holds them, and distances to them."""
+    largest = max((abs(x) for s in surfaces if s.swept is not None for corner in s.swept for x in corner), default=0.0)
+    return math.ldexp(1.0, min(-math.frexp(largest)[1], _LARGEST_EXPONENT)) if largest > 0 else 1.0
+
+
+def _nodes(surfaces: list[Surface], scale: float) -> tuple[Any, Any]:
+    """The nodes of all octants, and the number of an octant's.
+
+    A node is two rows of four: the corner of its box, times the scale, that rays of the octant reach first, and the one
+    they reach last, the link, and the object of a leaf, or NOTHING. Unbounded surfaces are leaves before the tree's
+    root, with boxes without bounds.
+    """
+    bounded = [i for i, surface in enumerate(surfaces) if surface.swept is not None]
+    unbounded = [i for i, surface in enumerate(surfaces) if surface.swept is None]
+    boxes = np.array([surfaces[i].swept for i in bounded], dtype=np.float64).reshape(-1, 2, 3) * scale
+    tree = threaded_bvh(boxes[:, 0], boxes[:, 1])
+    first, count = len(unbounded), len(unbounded) + tree.size
+    low = np.full((8, count, 3), -np.inf, dtype=np.float32)
+    high = np.full((8, count, 3), np.inf, dtype=np.float32)
+    corners = tree.boxes.reshape(8, tree.size, 2, 3)
+    with np.errstate(over="ignore"):  # to an infinite side
+        low[:, first:] = np.nextafter(corners[:, :, 0].astype(np.float32), np.float32(-np.inf))
+        high[:, first:] = np.nextafter(corners[:, :, 1].astype(np.float32), np.float32(np.inf))
+    negative = (np.arange(8)[:, None] >> np.arange(3) & 1 == 1)[:, None]
+    nodes = np.empty((8, count, 8), dtype=np.float32)
+    nodes[..., 0:3] = np.where(negative, high, low)
+    nodes[..., 3:6] = np.where(negative, low, high)
+    words = nodes.view(np.uint32)
+    words[:, :first, 6], words[:, :first, 7] = np.arange(1, first + 1), unbounded
+    words[:, first:, 6] = first + tree.skip.reshape(8, tree.size)
+    # NO_ITEM becomes NOTHING.
+    objects = np.array([*bounded, NOTHING], dtype=np.uint32)
+    words[:, first:, 7] = objects[np.minimum(tree.item, len(bounded))].reshape(8, tree.size)
+    return column(mi.Float, nodes), mi.UInt32(count)

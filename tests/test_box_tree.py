@@ -1,0 +1,85 @@
+"""The tree of boxes by which Mitsuba's kernels search many surfaces: which of them rays may meet."""
+
+from itertools import product
+from types import SimpleNamespace
+
+import numpy as np
+import pytest
+from variant import VARIANT
+
+CORNERS = [tuple(2 * k for k in place) for place in product(range(10), repeat=3)]
+"""Of boxes of edge 1, with as much room between them."""
+
+
+@pytest.fixture(scope="module")
+def tree():
+    import mitsuba_plugins
+
+    mitsuba_plugins.set_variant(VARIANT)
+    from mitsuba_plugins.intersection.box_tree import BoxTree
+    from mitsuba_plugins.intersection.rays import real
+
+    boxes = [((x, y, z), (x + 1, y + 1, z + 1)) for x, y, z in CORNERS]
+    return BoxTree(real("double"), [SimpleNamespace(box=box) for box in [None, *boxes]])
+
+
+def candidates(tree, origins, directions, ties, distance=np.inf, skipped=0xFFFFFFFF):
+    """For each ray the objects that it may meet, in the order in which they are found."""
+    import drjit as dr
+    import mitsuba as mi
+
+    from mitsuba_plugins.intersection.rays import NOTHING, lanes, real, start_ray, unit
+
+    o, d = (np.asarray(v, float).T for v in (origins, directions))
+    ray = start_ray(real("double"), mi.Point3d(o), unit(mi.Vector3d(d)))
+    width = dr.width(ray.d)
+    walk = tree.walk(ray, ties)
+    node, searching = mi.UInt32(walk.start), lanes(width)
+    limit = tree.limit(dr.full(mi.Float64, distance, width))
+    found = [[] for _ in range(width)]
+    while dr.any(searching):
+        index, node = tree.next(walk, node, limit, dr.full(mi.UInt32, skipped, width), searching)
+        searching &= index != NOTHING
+        for own, number, there in zip(found, np.array(index), np.array(searching), strict=True):
+            own += [int(number)] if there else []
+    return found
+
+
+def crossed(origin, direction, far=np.inf):
+    """Those of the boxes that a ray enters before it has come so far, 0 for what has no bounds."""
+    low = np.array(CORNERS, float)
+    with np.errstate(divide="ignore", invalid="ignore"):
+        a, b = ((corner - origin) / direction for corner in (low, low + 1))
+    near, beyond = np.minimum(a, b).max(axis=1), np.maximum(a, b).min(axis=1)
+    return {0, *(np.nonzero((near <= beyond) & (beyond >= 0) & (near <= far))[0] + 1).tolist()}
+
+
+@pytest.mark.parametrize("ties", [False, True])
+def test_all_boxes_that_rays_cross_and_no_others(tree, ties):
+    numbers = np.random.default_rng(1)
+    origins = numbers.uniform(-3, 23, (200, 3))
+    directions = numbers.normal(size=(200, 3))
+    directions /= np.linalg.norm(directions, axis=1)[:, None]
+    for far in (np.inf, 7.0):
+        for found, o, d in zip(candidates(tree, origins, directions, ties, far), origins, directions, strict=True):
+            assert len(found) == len(set(found))
+            assert set(found) == crossed(o, d, far)
+
+
+def test_one_is_passed_over(tree):
+    origin, direction = (0.5, 0.5, -1), (0, 0, 1)
+    (every,) = candidates(tree, [origin], [direction], False)
+    (rest,) = candidates(tree, [origin], [direction], False, skipped=every[2])
+    assert rest == [*every[:2], *every[3:]]
+    assert len(every) == 11
+
+
+@pytest.mark.parametrize("off", [0.0, 1e-12, -1e-12, 1e-10])
+def test_what_ties_is_sought_in_boxes_that_are_missed_by_a_little(tree, off):
+    """Rays along sides of ten boxes, or beside them by rounding errors; not those that pass by farther away."""
+    origins = [(1 + off, 0.5, -1), (-off, 0.5, -1), (0.5, 21, 1 + off), (19 + off, -1, 0)]
+    directions = [(0, 0, 1), (0, 0, 1), (0, -1, 0), (0, 1, 0)]
+    for found in candidates(tree, origins, directions, True):
+        assert len(found) == 11
+    beside = candidates(tree, [(1.001, 0.5, -1)], [(0, 0, 1)], True)
+    assert beside == [[0]]
