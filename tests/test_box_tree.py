@@ -1,7 +1,6 @@
 """The tree of boxes by which Mitsuba's kernels search many surfaces: which of them rays may meet."""
 
 from itertools import product
-from types import SimpleNamespace
 
 import numpy as np
 import pytest
@@ -20,7 +19,7 @@ def tree():
     from mitsuba_plugins.intersection.rays import real
 
     boxes = [((x, y, z), (x + 1, y + 1, z + 1)) for x, y, z in CORNERS]
-    return BoxTree(real("double"), [SimpleNamespace(box=box) for box in [None, *boxes]])
+    return BoxTree(real("double"), [None, *boxes])
 
 
 def candidates(tree, origins, directions, ties, distance=np.inf, skipped=0xFFFFFFFF):

@@ -31,7 +31,9 @@ from converter.scene.model import (
     Texmap,
 )
 from converter.scene.settings import Settings
+from converter.to_mitsuba.load import load_description
 from converter.to_mitsuba.scene import scene_description
+from mitsuba_plugins import set_variant
 from native_tracer.sampler import TIME
 
 GLOW = Finish(1, 0, 0, 1, 0, 0, 0)
@@ -302,7 +304,9 @@ def sliding(move, floor=FLOOR, eye=(0.5, 1.5, -8), light=(2, -1, 1)):
     return Scene(Camera(eye, (0, 0.25, 0), (0, 1, 0), 50), (0.2, 0.2, 0.2), lights, (WHITE,), (MATTE, MIRROR), objects)
 
 
+TWO_SLABS = Csg(tuple(Operand("+", box((-400, low, -300), (500, low + 2, 600))) for low in (-5, -3)))
 SLIDING = {
+    "two slabs": {"move": (3, 0, 1), "floor": TWO_SLABS},
     "floor": {"move": (3, 0, 1)},
     "light beside its face": {"move": (3, 0, 1), "floor": box((-400, -3, -300), (500, -1, 600)), "light": (900, -1, 1)},
     "slope": {"move": (0.8, -0.6, 0.3), "floor": Polyhedron(((0.6, 0.8, 0, 1.1),)), "light": (0.7, -1.9, 0.1)},
@@ -316,8 +320,10 @@ SLIDING = {
 }
 
 
-@pytest.mark.parametrize("method", ["native", "mitsuba-analytic", "mitsuba-bvh"])
-@pytest.mark.parametrize("name", SLIDING)
+@pytest.mark.parametrize(
+    ("name", "method"),
+    [*((name, "native") for name in SLIDING), *((name, "mitsuba-analytic") for name in SLIDING if name != "two slabs")],
+)
 def test_what_slides_in_itself_is_still(name, method):
     """A light, or an eye, lies on it as if it stood still."""
     made = sliding(**SLIDING[name])
@@ -372,6 +378,14 @@ def test_disagreements_with_single_precision_are_explained():
 def test_shapes_of_mitsuba_do_not_move(method):
     with pytest.raises(EffectUnavailable, match=r"object 1 moves, and .*own shapes.*: native, mitsuba-analytic and"):
         drawn(of_matter(), FEW, method)
+
+
+def test_the_integrator_knows_that_shapes_of_mitsuba_do_not_move():
+    made = scene_description(tiles(), FEW, with_shapes=False)
+    made["integrator"]["intersections"] = "mesh"
+    set_variant(VARIANT)
+    with pytest.raises(Exception, match="'geometry' moves objects, and the shapes of 'mesh' stand still"):
+        load_description(made)
 
 
 def test_a_body_that_comes_into_view_and_leaves_the_camera_is_no_oddity():

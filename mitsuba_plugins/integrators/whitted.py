@@ -236,14 +236,14 @@ class Whitted(mi.SamplingIntegrator):
     def material(self, ray: Ray, hit: Hit):
         """The finish and the pigment's colour at a hit."""
         finish = self._materials.finish(hit.object, hit.valid)
-        return finish, self._materials.color(hit.object, hit.place, self._errors(ray, hit), hit.valid)
+        return finish, self._materials.color(hit.object, hit.p_at_rest, self._errors(ray, hit), hit.valid)
 
     def _errors(self, ray: Ray, hit: Hit):
         """How far the coordinates of a hit may be off, where a pigment asks."""
         decides = decides_ties(hit.t) and self.intersections not in ("offset", "ulp")
         if not decides or not self._materials.has_edges:
             return self.types.Vector3(0)
-        return coordinate_errors(hit.place, hit.n, ray.d, hit.t, hit.off)
+        return coordinate_errors(hit.p_at_rest, hit.n, ray.d, hit.t, hit.off)
 
     def light(self, index, ray: Ray, hit: Hit, finish: Finish, color, active, sample, path) -> Illumination:
         """What one light, by its index, adds at a hit of a `sample`'s ray of that path."""

@@ -1,4 +1,4 @@
-"""A tree of boxes about any number of surfaces, wherever they move, which says which of them rays may meet.
+"""A tree of boxes about any number of surfaces, which says which of them rays may meet.
 
 It is walked without a stack: its nodes lie in depth-first order, each with a link to the node that follows where its
 box is missed. There is one such order for every octant of directions, in which of two children the nearer comes first.
@@ -15,7 +15,7 @@ import numpy as np
 
 from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.intersection.columns import column
-from mitsuba_plugins.intersection.geometry import Surface
+from mitsuba_plugins.intersection.geometry import Box
 from mitsuba_plugins.intersection.rays import NOTHING, Ray, Real, largest
 from native_tracer.bvh import threaded_bvh
 
@@ -43,11 +43,12 @@ class Walk:
 class BoxTree:
     """Single-precision boxes, which are rounded outward: what they let through is exact."""
 
-    def __init__(self, types: Real, surfaces: list[Surface]) -> None:
+    def __init__(self, types: Real, boxes: list[Box | None]) -> None:
+        """Take the boxes of all objects; None of those that have no bounds."""
         self._types = types
-        scale = _scale(surfaces)
+        scale = _scale(boxes)
         self._scale = types.Float(scale)
-        self._nodes, self._node_count = _nodes(surfaces, scale)
+        self._nodes, self._node_count = _nodes(boxes, scale)
         dr.make_opaque(self._node_count, self._scale)
 
     def walk(self, ray: Ray, ties: bool) -> Walk:
@@ -101,23 +102,23 @@ def _octant(d: Any) -> Any:
     return sum(dr.select(component < 0, mi.UInt32(1 << axis), 0) for axis, component in enumerate(d))
 
 
-def _scale(surfaces: list[Surface]) -> float:
+def _scale(boxes: list[Box | None]) -> float:
     """A power of two that makes the boxes so large that single precision holds them, and distances to them."""
-    largest = max((abs(x) for s in surfaces if s.swept is not None for corner in s.swept for x in corner), default=0.0)
+    largest = max((abs(x) for box in boxes if box is not None for corner in box for x in corner), default=0.0)
     return math.ldexp(1.0, min(-math.frexp(largest)[1], _LARGEST_EXPONENT)) if largest > 0 else 1.0
 
 
-def _nodes(surfaces: list[Surface], scale: float) -> tuple[Any, Any]:
+def _nodes(boxes: list[Box | None], scale: float) -> tuple[Any, Any]:
     """The nodes of all octants, and the number of an octant's.
 
     A node is two rows of four: the corner of its box, times the scale, that rays of the octant reach first, and the one
     they reach last, the link, and the object of a leaf, or NOTHING. Unbounded surfaces are leaves before the tree's
     root, with boxes without bounds.
     """
-    bounded = [i for i, surface in enumerate(surfaces) if surface.swept is not None]
-    unbounded = [i for i, surface in enumerate(surfaces) if surface.swept is None]
-    boxes = np.array([surfaces[i].swept for i in bounded], dtype=np.float64).reshape(-1, 2, 3) * scale
-    tree = threaded_bvh(boxes[:, 0], boxes[:, 1])
+    bounded = [i for i, box in enumerate(boxes) if box is not None]
+    unbounded = [i for i, box in enumerate(boxes) if box is None]
+    numbers = np.array([boxes[i] for i in bounded], dtype=np.float64).reshape(-1, 2, 3) * scale
+    tree = threaded_bvh(numbers[:, 0], numbers[:, 1])
     first, count = len(unbounded), len(unbounded) + tree.size
     low = np.full((8, count, 3), -np.inf, dtype=np.float32)
     high = np.full((8, count, 3), np.inf, dtype=np.float32)

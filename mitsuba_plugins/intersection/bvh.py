@@ -19,7 +19,7 @@ class BvhSurfaces(ExactSurfaces):
 
     def __init__(self, types: Real, surfaces: list[Surface], primitives: Primitives, contacts: LightContacts) -> None:
         self._types = types
-        self._tree = BoxTree(types, surfaces)
+        self._tree = BoxTree(types, [surface.swept for surface in surfaces])
         super().__init__(primitives, contacts, self._tree)
 
     def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any, Any]:

@@ -35,8 +35,7 @@ class MitsubaSurfaces:
         si = found.compute_surface_interaction(probe, +flags, valid)
         n = mi.Vector3f(si.sh_frame.n)
         index, inside = dr.select(valid, index, NOTHING), dr.dot(n, ray.d) > 0
-        zero = mi.Float(0)
-        return Hit(valid, si.t, index, primitive, si.p, n, inside, zero, zero, zero, si.p)
+        return Hit(valid, si.t, index, primitive, si.p, n, inside, mi.Float(0), mi.Float(0), mi.Float(0))
 
     def spawn(self, hit: Hit, d: Any, inside: Any, spread: Any) -> Ray:
         """The ray that leaves `hit` in direction `d`."""

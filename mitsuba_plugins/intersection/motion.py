@@ -10,7 +10,7 @@ from typing import Any
 import drjit as dr
 
 from mitsuba_plugins.intersection.geometry import Surface
-from mitsuba_plugins.intersection.rays import Ray, largest
+from mitsuba_plugins.intersection.rays import Hit, Ray, largest
 from mitsuba_plugins.intersection.rounding import epsilon, input_error
 from mitsuba_plugins.intersection.shapes.kind import Row
 
@@ -30,10 +30,11 @@ def bring_back(ray: Ray, motion: Any) -> Ray:
     return replace(ray, o=type(ray.o)(ray.o - way), t_min=ray.t_min + _error(ray.o, way, motion))
 
 
-def take_along(ray: Ray, motion: Any, p: Any, error: Any) -> tuple[Any, Any]:
-    """A point (Point3) of such an object where that is, and how far it may be off, given how far it may be before."""
+def take_along(hit: Hit, ray: Ray, motion: Any) -> Hit:
+    """A hit on an object that stands still where that is at the time of the ray."""
     way = _way(ray, motion)
-    return type(p)(p + way), error + _error(p, way, motion)
+    p, error = type(hit.p)(hit.p + way), hit.error + _error(hit.p, way, motion)
+    return replace(hit, p=p, error=error, place=hit.p, time=ray.time)
 
 
 def _way(ray: Ray, motion: Any) -> Any:

@@ -13,7 +13,7 @@ from mitsuba_plugins.intersection.geometry import Surface
 from mitsuba_plugins.intersection.leaf_table import GatheredLeaves, LeafTable
 from mitsuba_plugins.intersection.motion import bring_back, motion_row, take_along
 from mitsuba_plugins.intersection.passages import Crossing, crossing_if, first_crossing
-from mitsuba_plugins.intersection.rays import UPRIGHT, Ray, Real, largest
+from mitsuba_plugins.intersection.rays import UPRIGHT, Hit, Ray, Real, largest
 from mitsuba_plugins.intersection.rows import GatheredRows
 from mitsuba_plugins.intersection.shapes.kind import ShapeKind, SurfacePoint
 from mitsuba_plugins.intersection.shapes.table import SHAPE_KINDS
@@ -63,9 +63,9 @@ class Primitives:
         """A ray as it meets an object, a different one for each, where that stands still."""
         return bring_back(ray, self._motion_of(index, active)) if self.any_moving else ray
 
-    def taken_along(self, ray: Ray, index: Any, p: Any, error: Any, active: Any) -> tuple[Any, Any]:
-        """A point of an object at rest where that is, and how far it may be off, given how far it may be at rest."""
-        return take_along(ray, self._motion_of(index, active), p, error) if self.any_moving else (p, error)
+    def taken_along(self, hit: Hit, ray: Ray, active: Any) -> Hit:
+        """A hit on an object at rest where that is at the time of the ray."""
+        return take_along(hit, ray, self._motion_of(hit.object, active)) if self.any_moving else hit
 
     def _motion_of(self, index: Any, active: Any) -> Any:
         return dr.gather(self.types.Vector4, self._motion, index, active)

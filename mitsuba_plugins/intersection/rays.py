@@ -75,8 +75,13 @@ class Hit:
     off: Any  # Float, how far ray and surface may be off from one another there
     error: Any  # Float, how far p may be off
     lean: Any  # Float, how far n may be off
-    place: Any  # Point3, where p is on the object at time 0, as its pigment is told
+    place: Any = None  # Point3, where p is on the object at time 0, where something moves
     time: Any = None  # Float, the ray's
+
+    @property
+    def p_at_rest(self) -> Any:
+        """Where p is on the object at time 0, as its pigment is told."""
+        return self.p if self.place is None else self.place
 
 
 def ray_reach(ray: Ray) -> Any:

@@ -32,19 +32,19 @@ class ExactSurfaces:
             t, index, primitive = self._ties.closest(ray, t, index, primitive, active & close)
         valid = active & (index != NOTHING)
         moving, ray = ray, self.primitives.at_rest(ray, index, valid)
-        near = type(ray.o)(ray.o + t * ray.d)
-        surface = self.primitives.surface_at(ray, index, primitive, near, valid, largest(ray.o))
-        place, n = surface.p, surface.n
+        p = type(ray.o)(ray.o + t * ray.d)
+        surface = self.primitives.surface_at(ray, index, primitive, p, valid, largest(ray.o))
+        p, n = surface.p, surface.n
         inside = dr.select(index == ray.object, ray.inside, dr.dot(n, ray.d) > 0)
         off = ray.t_min + surface.error + t * ray.spread
-        error = origin_error(place, t)
+        error = origin_error(p, t)
         if ties:
             # A ray that is off meets the surface farther off the more it slants.
             along = quotient(off, dr.abs(dr.dot(n, ray.d)))
-            error += dr.minimum(along, most_blur(t) * (largest(place) + t))
+            error += dr.minimum(along, most_blur(t) * (largest(p) + t))
         lean = quotient(error, surface.radius)
-        p, error = self.primitives.taken_along(moving, index, place, error, valid)
-        return Hit(valid, t, index, primitive, p, n, inside, off, error, lean, place, ray.time)
+        hit = Hit(valid, t, index, primitive, p, n, inside, off, error, lean)
+        return self.primitives.taken_along(hit, moving, valid)
 
     def spawn(self, hit: Hit, d: Any, inside: Any, spread: Any) -> Ray:
         """The ray that leaves `hit` in direction `d`, on the given side of the object."""
