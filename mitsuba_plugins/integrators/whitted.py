@@ -584,7 +584,7 @@ class Whitted(mi.SamplingIntegrator):
     def _hit_word(self, ray: Ray, hit: Hit, path):
         """What the hit of a ray of that path adds to a signature."""
         piece = dr.gather(mi.UInt32, self._pieces, hit.primitive & UPRIGHT, hit.valid)
-        cell = self._materials.cell(hit.object, hit.p, self._errors(ray, hit), hit.valid)
+        cell = self._materials.cell(hit.object, hit.p_at_rest, self._errors(ray, hit), hit.valid)
         inside = dr.select(hit.inside, mi.UInt32(1), 0)
         return hit_word(path, hit.object, piece, inside, cell)
 

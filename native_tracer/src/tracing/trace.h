@@ -213,7 +213,7 @@ Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const H
     return result;
 }
 
-// A point that rays have met, near an object that stands still.
+// The points that the lanes in `which` have met, near an object that stands still.
 template <typename Real, typename Observer>
 [[gnu::always_inline]] inline void Tracer<Real, Observer>::meet(const Object<Real>& object, int primitive,
                                                                 const Rays<Real>& rays, const Hits<Real>& hits,
