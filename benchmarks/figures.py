@@ -1,6 +1,7 @@
 """Prints the figures of the README: agreement of the renderers on every scene, why pixels disagree, speed, memory.
 
-    python benchmarks/figures.py [memory] [agreement] [bytes] [classes] [speed] [samples] [adaptive]
+    python benchmarks/figures.py [memory] [agreement] [bytes] [classes] [speed] [samples] [sampled]
+                                 [adaptive]
 
 Times are medians of runs that take turns, so that a machine whose speed drifts is fair to all; they depend on the
 machine, their ratios much less. POV-Ray joins where it is installed.
@@ -59,6 +60,7 @@ def main() -> None:
         "classes": classes,
         "speed": speed,
         "samples": samples,
+        "sampled": sampled,
         "adaptive": adaptive,
     }
     for name in sys.argv[1:] or parts:
@@ -195,6 +197,36 @@ def samples() -> None:
             if kind == "Mitsuba":
                 line += f"{'':<12}" + "".join(f"{_launches(render) / n:>8.3f}" for n, render in draw.items())
             print(line, flush=True)
+
+
+def sampled() -> None:
+    """The scenes in which something is random: pixels that disagree at equal samples, and what a sample costs."""
+    print("pixels that differ by more than 1/255 from native double: Mitsuba's of 160 x 120, long double's of 80 x 60;")
+    print(f"microseconds a sample, medians of {FEW_RUNS} runs in turn")
+    print(f"{'':<14}{'samples':>8}{'Mitsuba':>9}{'long double':>13}{'native us':>11}{'Mitsuba us':>12}{'ratio':>7}")
+    native, mitsuba, exact = NativeRenderer(), MitsubaRenderer(), NativeRenderer("long double")
+    for file in sorted((ROOT / "scenes" / "sampled").glob("*.in")):
+        scene = load_scene(file)
+        for count in (1, 16, 256):
+            large, small = (Settings(width=w, height=h, samples=count) for w, h in ((160, 120), (80, 60)))
+            wrong = [_disagreeing(scene, large, native, mitsuba), _disagreeing(scene, small, native, exact)]
+            times = _interleaved(
+                {
+                    kind: partial(_render_seconds, partial(renderer.render, scene, large))
+                    for kind, renderer in (("native", native), ("Mitsuba", mitsuba))
+                },
+                FEW_RUNS,
+            )
+            us, theirs = (statistics.median(spent) * 1e6 / (160 * 120 * count) for spent in times.values())
+            print(
+                f"{file.stem:<14}{count:>8}{wrong[0]:>9}{wrong[1]:>13}{us:>11.2f}{theirs:>12.2f}{theirs / us:>7.1f}",
+                flush=True,
+            )
+
+
+def _disagreeing(scene: Scene, settings: Settings, one: Renderer, other: Renderer) -> int:
+    pixels = (np.asarray(renderer.render(scene, settings).pixels) for renderer in (one, other))
+    return compare_pixels(*pixels).disagreeing
 
 
 def adaptive() -> None:
