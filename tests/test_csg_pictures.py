@@ -12,7 +12,20 @@ from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
 from converter.renderers.povray import PovrayRenderer
 from converter.scene.geometry import simplified
-from converter.scene.model import Checker, Csg, Finish, Light, Object, Operand, Quadric, Scene, Sphere
+from converter.scene.model import (
+    Camera,
+    Checker,
+    Csg,
+    Finish,
+    Light,
+    Object,
+    Operand,
+    Polyhedron,
+    Quadric,
+    Scene,
+    Solid,
+    Sphere,
+)
 from converter.scene.parser import parse_scene
 from converter.scene.settings import Settings
 from converter.studies.exact.tracer import exact_picture
@@ -93,6 +106,36 @@ def test_both_renderers_agree(name, finish):
     native = picture(NativeRenderer(), scene, LARGE)
     for intersections in ("analytic", "bvh"):
         assert disagreeing(picture(MitsubaRenderer("llvm_ad_rgb", intersections), scene, LARGE), native) == 0
+
+
+ROUND = {
+    "quadric": Quadric((1.0, 0.0, 1.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, -12.6025)),
+    "sphere": Sphere((0.0, 5.5, 0.0), 3.55),
+}
+
+
+@pytest.mark.parametrize("name", ROUND)
+def test_rays_leave_a_round_surface_in_a_plane_that_another_csg_begins_at(name):
+    """Where the one begins, which has the same round surface, they are outside of it as soon as they start."""
+    slab = Polyhedron(((0, -1, 0, 5.35), (0, 1, 0, -5.8)))
+    left, right = (
+        Polyhedron(((-0.951057, 0, 0.309017, 0), (1, 0, 0, 0))),
+        Polyhedron(((-1, 0, 0, 0), (0.951057, 0, 0.309017, 0))),
+    )
+    wedges = [csg("+", csg("+", ROUND[name], "&", slab), "&", wedge) for wedge in (left, right)]
+    scene = Scene(
+        Camera((0, 1.7, -15.5), (0, 3.5, 0), (0, 1, 0), 34),
+        (1, 1, 1),
+        (),
+        (Solid((0.1, 0.5, 0.5)), Solid((0.9, 0.7, 0.2))),
+        (Finish(0.5, 0, 0, 1, 0.5, 0, 0),),
+        tuple(Object(k, 0, wedge) for k, wedge in enumerate(wedges)),
+    )
+    settings = Settings(64, 48)
+    exact = picture(NativeRenderer("long double"), scene, settings)
+    assert disagreeing(picture(NativeRenderer(), scene, settings), exact) == 0
+    for intersections in ("analytic", "bvh"):
+        assert disagreeing(picture(MitsubaRenderer("llvm_ad_rgb", intersections), scene, settings), exact) == 0
 
 
 @pytest.mark.parametrize("name", BODIES)

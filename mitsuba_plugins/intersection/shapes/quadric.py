@@ -306,7 +306,8 @@ def passage_by_rules(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
     discriminant = dr.select(line.discriminant > touching, line.discriminant, dr.nan)
     near, far = line.roots(discriminant)
 
-    # A ray that starts on the quadric by the roundings of its origin, and not by knowledge, does not meet it there.
+    # A ray that starts on the quadric by its origin's roundings, and not by knowledge, does not meet it there. That
+    # crossing lies behind, and so do both where it leads away from the other.
     start_gradient = quadric.times(line.start) + quadric.g
     start_slope = 2 * dr.norm(start_gradient)
     start_off = quadric.error(line.start) + ray.t_min * start_slope
@@ -314,7 +315,7 @@ def passage_by_rules(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
     starts &= start_off * quadric.bend() <= most_blur(off) * dr.square(start_slope)
     other = line.other_root()
     near = dr.select(starts, -dr.inf, near)
-    far = dr.select(own, other, dr.select(starts, dr.select(far > ray.t_min, other, dr.inf), far))
+    far = dr.select(own, other, dr.select(starts, dr.select(far > ray.t_min, other, -dr.inf), far))
 
     def distance_error(_: Any, t: Any) -> Any:
         along = t - line.middle

@@ -71,10 +71,11 @@ def passage_by_rules(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
     f, b, discriminant = _from_center(row, ray)
     touching = radius * dr.minimum(2 * (error + dr.abs(b) * ray.spread), most_blur(radius) * radius)
     near, far = _roots(row, f, b, dr.select(discriminant > touching, discriminant, dr.nan))
-    # A ray that starts on the sphere by the roundings of its origin, and not by knowledge, does not meet it there.
+    # A ray that starts on the sphere by its origin's roundings, and not by knowledge, does not meet it there. That
+    # crossing lies behind, and so do both where it leads away from the other.
     starts = ~own & (dr.abs(dr.norm(f) - radius) <= error) & (error <= most_blur(radius) * radius)
     near = dr.select(starts, -dr.inf, near)
-    far = dr.select(starts, dr.select(far > ray.t_min, -2 * dr.dot(f, ray.d), dr.inf), far)
+    far = dr.select(starts, dr.select(far > ray.t_min, -2 * dr.dot(f, ray.d), -dr.inf), far)
 
     def distance_error(_: Any, t: Any) -> Any:
         arm = f + t * ray.d
