@@ -12,6 +12,7 @@ import numpy as np
 from converter.files import shown_name
 from converter.renderers.methods import Family
 from converter.studies.chart_report import about_reference
+from converter.studies.figure_png import save_png
 from converter.studies.labels import Box, Crowd, leader, place_labels
 from converter.studies.machine import machine
 from converter.studies.measure import Measured, SceneStudy
@@ -111,9 +112,10 @@ def save(make: Callable[[], "Figure"], file: Path) -> None:
     # Text stays text, and the same figures give the same file.
     with mpl.rc_context({"svg.fonttype": "none", "svg.hashsalt": "whitted", "axes.linewidth": 0.6}):
         figure = make()
-        ending = file.suffix.lower()
-        metadata = {"Date": None} if ending == ".svg" else {}
-        figure.savefig(file, format=ending[1:], dpi=DOTS, metadata=metadata)
+        if file.suffix.lower() == ".svg":
+            figure.savefig(file, format="svg", dpi=DOTS, metadata={"Date": None})
+        else:
+            save_png(figure, file, DOTS)
 
 
 def chart(studies: Sequence[SceneStudy]) -> "Figure":

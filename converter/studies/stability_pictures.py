@@ -3,13 +3,13 @@
 import math
 from collections.abc import Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from io import BytesIO
 from pathlib import Path
 
 import numpy as np
 
 from converter.compare.metrics import Pixels, clamped
 from converter.studies.family import Truth
+from converter.studies.figure_png import save_png
 from converter.studies.stability import FamilyStudy, Outcome
 from converter.studies.stability_report import number
 
@@ -128,7 +128,6 @@ def draw_failures(failures: Sequence[Failure], file: Path) -> None:
 
     """
     from matplotlib.figure import Figure
-    from PIL import Image  # matplotlib brings it
 
     height = max(_height(failure) for failure in failures)
     cell = 2 * WIDTH + GAP + MARGIN, height + TITLE + MARGIN
@@ -151,10 +150,7 @@ def draw_failures(failures: Sequence[Failure], file: Path) -> None:
             axes.set_xticks([])
             axes.set_yticks([])
             axes.spines[:].set(color="0.6", linewidth=0.5)
-    drawn = BytesIO()
-    figure.savefig(drawn, format="png", dpi=DPI)
-    # A byte a pixel: less than half as large, and nobody sees it.
-    Image.open(drawn).convert("RGB").quantize(256, dither=Image.Dither.NONE).save(file, "PNG", optimize=True)
+    save_png(figure, file, DPI)
 
 
 def _height(failure: Failure) -> int:
