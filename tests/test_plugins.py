@@ -326,7 +326,8 @@ HOST_DIVISIONS = {
     "integrators/pace.py": {"__init__", "rows", "samples", "passes", "launch"},
     "sampler.py": {"disc_point", "cone_direction", "_small_turn"},
     "trial.py": {"_memory"},
-    "integrators/whitted.py": {"__init__", "_stage", "_corners", "sample_offsets", "signed_bands", "chosen_pixels"},
+    "integrators/pictures.py": {"_stage", "told", "_corners", "sample_offsets", "signed_bands", "chosen_pixels"},
+    "integrators/whitted.py": {"__init__"},
 }
 """Functions that divide Python's or NumPy's numbers, or whole numbers, or build a path."""
 

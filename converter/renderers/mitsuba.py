@@ -72,6 +72,8 @@ class MitsubaRenderer:
         built = time.perf_counter()
 
         pixels = np.zeros((settings.height, settings.width, 3), dtype=np.float32)
+        from mitsuba_plugins.integrators import pictures  # when a variant is set
+
         integrator, sensor = mitsuba_scene.integrator(), mitsuba_scene.sensors()[0]
         all_passes = passes(sensor.sampler().sample_count())
 
@@ -89,10 +91,10 @@ class MitsubaRenderer:
         try:
             with _threads(settings.threads):
                 if len(all_passes) == 1:
-                    bands = integrator.bands(mitsuba_scene, sensor, progress=progress)
+                    bands = pictures.bands(integrator, mitsuba_scene, sensor, progress=progress)
                 else:
                     sums = _sums_to_go_on_from(start, pixels)
-                    bands = integrator.bands_by_passes(mitsuba_scene, sensor, sums, progress)
+                    bands = pictures.bands_by_passes(integrator, mitsuba_scene, sensor, sums, progress)
                 for first, color in bands:
                     rows = np.moveaxis(np.asarray(color), 0, -1).reshape(-1, settings.width, 3)
                     pixels[first : first + len(rows)] = rows
@@ -126,6 +128,8 @@ class MitsubaRenderer:
 
         width, height = settings.width, settings.height
         pixels = np.zeros((height, width, 3), dtype=np.float32)
+        from mitsuba_plugins.integrators import pictures  # when a variant is set
+
         integrator, sensor = mitsuba_scene.integrator(), mitsuba_scene.sensors()[0]
         samples = sensor.sampler().sample_count()
         too_deep = [0]
@@ -143,7 +147,7 @@ class MitsubaRenderer:
         def add(sums: Any, mask: Any, cells: list[int], count: int, told: Progress | None) -> None:
             """Add the samples of these cells to the sums of pixels, and show the mean, of `count`."""
             numbers = np.flatnonzero(mask).astype(np.uint32)
-            for at, color in integrator.chosen_pixels(mitsuba_scene, sensor, numbers, cells, told):
+            for at, color in pictures.chosen_pixels(integrator, mitsuba_scene, sensor, numbers, cells, told):
                 chosen = numbers[at : at + color.shape[1]]
                 sums.reshape(-1, 3)[chosen] += np.asarray(color).T
                 pixels.reshape(-1, 3)[chosen] = sums.reshape(-1, 3)[chosen] / count
@@ -165,7 +169,7 @@ class MitsubaRenderer:
                 else:
                     signatures = np.zeros((height, width), dtype=np.uint32)
                     first = share_of_first(samples)
-                    bands = integrator.signed_bands(mitsuba_scene, sensor, part_of(progress, 0, first))
+                    bands = pictures.signed_bands(integrator, mitsuba_scene, sensor, part_of(progress, 0, first))
                     for row, color, words in bands:
                         rows = np.moveaxis(np.asarray(color), 0, -1).reshape(-1, width, 3)
                         pixels[row : row + len(rows)] = rows
@@ -220,11 +224,12 @@ def _sums_to_go_on_from(start: Passes | None, pixels: Any) -> Any:
     import mitsuba as mi
     import numpy as np
 
-    from mitsuba_plugins.integrators.whitted import PassSums
+    from mitsuba_plugins.integrators.pictures import PassSums
+    from mitsuba_plugins.intersection.columns import column
 
     colors = np.frombuffer(start.colors, np.float64).reshape(-1, 3)
     np.divide(colors.reshape(pixels.shape), start.notes["samples"], out=pixels, casting="same_kind")
-    too_deep = mi.Bool(np.frombuffer(start.too_deep, np.bool_))
+    too_deep = column(mi.Bool, np.frombuffer(start.too_deep, np.bool_))
     return PassSums(start.done, mi.Color3d(np.ascontiguousarray(colors.T)), too_deep)
 
 

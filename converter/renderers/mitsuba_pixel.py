@@ -25,8 +25,10 @@ def trace_pixels(scene: Any, pixels: Sequence[tuple[int, int]]) -> list[PixelRec
     """
     import mitsuba as mi
 
+    from mitsuba_plugins.integrators.pictures import sample_offsets
+
     integrator, sensor = scene.integrator(), scene.sensors()[0]
-    offsets = integrator.sample_offsets(sensor.sampler().sample_count())
+    offsets = sample_offsets(sensor.sampler().sample_count())
     x, y = (np.array([pixel[k] + offset[k] for pixel in pixels for offset in offsets], float) for k in (0, 1))
     columns, rows = (np.repeat([pixel[k] for pixel in pixels], len(offsets)) for k in (0, 1))
     with integrator.prepared(scene, sensor):

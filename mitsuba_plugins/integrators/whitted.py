@@ -1,8 +1,7 @@
 """Recursive ray tracing after Whitted, with the course's shading model, in double precision."""
 
-import math
 from contextlib import contextmanager
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
 import drjit as dr
@@ -11,7 +10,7 @@ import numpy as np
 
 from mitsuba_plugins import sampler as samples
 from mitsuba_plugins.arithmetic import quotient
-from mitsuba_plugins.integrators.pace import Pace
+from mitsuba_plugins.integrators.pictures import PassSums, bands, block
 from mitsuba_plugins.integrators.signature import hit_word, shadow_word
 from mitsuba_plugins.integrators.stack import RayStack
 from mitsuba_plugins.integrators.tables import Finish, Illumination, Lights, Materials
@@ -47,7 +46,6 @@ from mitsuba_plugins.intersection.rounding import (
     most_blur,
     most_camera_blur,
 )
-from native_tracer.passes import passes
 
 INTERSECTIONS = ("analytic", "bvh", "mesh", "offset", "ulp")
 """Ways to find what a ray hits."""
@@ -401,6 +399,13 @@ class Whitted(mi.SamplingIntegrator):
                     path = 2 * path + 1
         return radiance, too_deep, signature
 
+    def _hit_word(self, ray: Ray, hit: Hit, path):
+        """What the hit of a ray of that path adds to a signature."""
+        piece = dr.gather(mi.UInt32, self._pieces, hit.primitive & UPRIGHT, hit.valid)
+        cell = self._materials.cell(hit.object, hit.p_at_rest, self._errors(ray, hit), hit.valid)
+        inside = dr.select(hit.inside, mi.UInt32(1), 0)
+        return hit_word(path, hit.object, piece, inside, cell)
+
     def followed(self, weight, depth, hit: Hit, finish: Finish):
         """Weight of the mirrored ray of a hit, and where it is followed; the same of the refracted one.
 
@@ -452,210 +457,13 @@ class Whitted(mi.SamplingIntegrator):
             sensor = scene.sensors()[sensor]
         film = sensor.film()
         film.prepare([])
-        bands = [color for _, color in self.bands(scene, sensor, spp)]
-        film.put_block(_block(bands, film))
+        film.put_block(block([color for _, color in bands(self, scene, sensor, spp)], film))
         if not develop:
             return None
         image = film.develop()
         if evaluate:
             dr.eval(image)
         return image
-
-    def bands(self, scene, sensor, spp=0, progress=None):
-        """Draw a picture in bands of rows, so that memory does not grow with its size, by launches that take some time
-        but not long, so that there are signs of life and no more launches than that.
-
-        Yields:
-            The first row of a finished band within the film's crop window, and its pixels' colours (Color3f), row by
-            row. Its pixels are among `pixels_too_deep` by then. After every launch `progress`, if any, is called with
-            the finished share of the picture.
-
-        """
-        cells = [cell for cells in passes(spp or sensor.sampler().sample_count()) for cell in cells]
-        with self.prepared(scene, sensor), dr.suspend_grad():
-            pace = Pace(self.branching, self.max_depth[0])
-            self.pixels_too_deep = 0
-            for first, color, too_deep in self._stage(
-                sensor, pace, self._tables(cells, len(cells)), 0, len(cells), None, progress
-            ):
-                if self.depth_limited:
-                    self.pixels_too_deep += dr.count(too_deep)[0]
-                yield first, mi.Color3f(quotient(color, len(cells)))
-
-    def bands_by_passes(self, scene, sensor, start=None, progress=None):
-        """Draw a picture in passes of samples, see :mod:`native_tracer.passes`, and each in bands: pictures that take
-        long, for all of it has some samples soon. Short passes are drawn together.
-
-        Yields:
-            The first row of a band within the film's crop window, and its pixels' colours (Color3f) with what is drawn
-            so far. What is left in ``sums`` (PassSums) has whole passes only, beginning with those of `start`.
-
-        """
-        all_passes = passes(sensor.sampler().sample_count())
-        cells = [cell for cells in all_passes for cell in cells]
-        width, height = sensor.film().crop_size()
-        with self.prepared(scene, sensor), dr.suspend_grad():
-            pace = Pace(self.branching, self.max_depth[0])
-            tables = self._tables(cells, len(cells))
-            self.sums = start or PassSums(0, dr.zeros(mi.Color3d, width * height), dr.zeros(mi.Bool, width * height))
-            while self.sums.passes < len(all_passes):
-                size = len(all_passes[0])
-                more = min(pace.passes(width * height * size), len(all_passes) - self.sums.passes)
-                begin, end = self.sums.passes * size, (self.sums.passes + more) * size
-                bands = []
-                sums = self.sums if begin else None
-                for first, color, too_deep in self._stage(sensor, pace, tables, begin, end, sums, progress):
-                    bands.append((*color, too_deep if self.depth_limited else dr.zeros(mi.Bool, dr.width(color))))
-                    yield first, mi.Color3f(quotient(color, end))
-                red, green, blue, too_deep = (dr.concat(parts) for parts in zip(*bands, strict=True))
-                colors = mi.Color3d(red, green, blue)
-                dr.eval(colors, too_deep)
-                self.sums = PassSums(self.sums.passes + more, colors, too_deep)
-                self.pixels_too_deep = dr.count(too_deep)[0]
-
-    # ------------------------------------------------------------------ some pixels more often than others
-
-    def signed_bands(self, scene, sensor, progress=None):
-        """Draw a picture of one sample a pixel in bands of rows, with signatures, see :mod:`.signature`.
-
-        Yields:
-            The first row of a band within the film's crop window, and its pixels' colours (Color3f) and signatures
-            (UInt32).
-
-        """
-        width, height = sensor.film().crop_size()
-        with self.prepared(scene, sensor, signing=True), dr.suspend_grad():
-            pace = Pace(self.branching, self.max_depth[0])
-            self.pixels_too_deep = 0
-            offset = column(mi.Float64, self.sample_offsets(1))
-            first = 0
-            while first < height:
-                rows = min(height - first, pace.rows(width))
-                with pace.launch(rows * width):
-                    corner = _corners(sensor.film(), _rows(sensor.film(), first, rows * width))
-                    position = corner + dr.gather(mi.Point2d, offset, mi.UInt32(0))
-                    number = samples.Sample(mi.UInt32(0), mi.UInt32(0))
-                    color, too_deep, signature = self.trace(self.primary_ray(sensor, position, number), number, True)
-                    pace.recorded()
-                    dr.eval(color, too_deep, signature)
-                    dr.sync_thread()
-                if self.depth_limited:
-                    self.pixels_too_deep += dr.count(too_deep)[0]
-                yield first, mi.Color3f(color), signature
-                first += rows
-                if progress is not None:
-                    progress(first / height)
-
-    def chosen_pixels(self, scene, sensor, numbers, cells, progress=None):
-        """Draw some pixels, with the samples in some cells of the grid. The `numbers` of the pixels (NumPy, uint32)
-        count row by row within the film's crop window.
-
-        Yields:
-            The index of a pixel among them, and the sums of the samples' colours (Color3d) from it on, for as many as
-            are drawn at once.
-
-        """
-        with self.prepared(scene, sensor), dr.suspend_grad():
-            pace = Pace(self.branching, self.max_depth[0])
-            tables = self._tables(cells, sensor.sampler().sample_count())
-            self.pixels_too_deep = 0
-            first = 0
-            while first < len(numbers):
-                pixel = mi.UInt32(numbers[first : first + pace.rows(1)])
-                count = dr.width(pixel)
-                color = dr.opaque(mi.Color3d, 0, count)
-                too_deep = dr.opaque(mi.Bool, False, count) if self.depth_limited else False
-                done = 0
-                while done < len(cells):
-                    more = min(len(cells) - done, pace.samples(count))
-                    with pace.launch(count * more):
-                        color, too_deep = self._add_samples(sensor, color, too_deep, pixel, tables, done, done + more)
-                        pace.recorded()
-                        dr.eval(color, too_deep)
-                        dr.sync_thread()
-                    done += more
-                    if progress is not None:
-                        progress((first + count * done / len(cells)) / len(numbers))
-                if self.depth_limited:
-                    self.pixels_too_deep += dr.count(too_deep)[0]
-                yield first, color
-                first += count
-
-    def _hit_word(self, ray: Ray, hit: Hit, path):
-        """What the hit of a ray of that path adds to a signature."""
-        piece = dr.gather(mi.UInt32, self._pieces, hit.primitive & UPRIGHT, hit.valid)
-        cell = self._materials.cell(hit.object, hit.p_at_rest, self._errors(ray, hit), hit.valid)
-        inside = dr.select(hit.inside, mi.UInt32(1), 0)
-        return hit_word(path, hit.object, piece, inside, cell)
-
-    def _tables(self, cells, spp):
-        """Where some of `spp` samples of a pixel lie, in the order in which they are drawn, and their numbers."""
-        offsets = self.sample_offsets(spp)
-        return column(mi.Float64, [offsets[cell] for cell in cells]), mi.UInt32(cells)
-
-    def _stage(self, sensor, pace, tables, begin, end, sums, progress):
-        """Draw samples from `begin` to `end` of all pixels, in bands of rows, and add them to what is in `sums`
-        (PassSums), if given.
-
-        Yields:
-            The first row of a finished band, the sums of its pixels' colours (Color3d), and where the depth limit
-            dropped a ray (Bool), if it is limited.
-
-        """
-        width, height = sensor.film().crop_size()
-        count = dr.width(tables[1])
-        first = 0
-        while first < height:
-            rows = min(height - first, pace.rows(width))
-            if sums is None:
-                # Opaque, so that the first launch needs no kernel of its own.
-                color = dr.opaque(mi.Color3d, 0, rows * width)
-                too_deep = dr.opaque(mi.Bool, False, rows * width) if self.depth_limited else False
-            else:
-                pixel = _rows(sensor.film(), first, rows * width)
-                color = dr.gather(mi.Color3d, sums.colors, pixel)
-                too_deep = dr.gather(mi.Bool, sums.too_deep, pixel) if self.depth_limited else False
-                dr.eval(color, too_deep)
-            done = begin
-            while done < end:
-                more = min(end - done, pace.samples(rows * width))
-                with pace.launch(rows * width * more):
-                    pixel = _rows(sensor.film(), first, rows * width)
-                    color, too_deep = self._add_samples(sensor, color, too_deep, pixel, tables, done, done + more)
-                    pace.recorded()
-                    dr.eval(color, too_deep)
-                    dr.sync_thread()
-                done += more
-                if progress is not None:
-                    progress((begin + ((end - begin) * first + rows * (done - begin)) / height) / count)
-            yield first, color, too_deep
-            first += rows
-
-    @dr.syntax
-    def _add_samples(self, sensor, color, too_deep, pixel, tables, sample, end):
-        """What `trace` finds for pixels, by their numbers (UInt32), with some more samples added."""
-        width = dr.width(color)
-        corner = _corners(sensor.film(), pixel)
-        key = self.pixel_key(corner)
-        offsets, numbers = tables
-        if dr.hint(dr.width(offsets) == 2, mode="scalar"):
-            # One sample needs no loop, which takes twice as long to record.
-            position = corner + dr.gather(mi.Point2d, offsets, mi.UInt32(0))
-            number = self.name_sample(key, mi.UInt32(0))
-            more, deep, _ = self.trace(self.primary_ray(sensor, position, number), number, True)
-            color += more
-            too_deep |= deep
-        else:
-            # Opaque, so that all numbers of samples share one kernel.
-            sample, end = dr.opaque(mi.UInt32, sample, width), dr.opaque(mi.UInt32, end)
-            while sample < end:
-                position = corner + dr.gather(mi.Point2d, offsets, sample)
-                number = self.name_sample(key, dr.gather(mi.UInt32, numbers, sample) if self.sampled else mi.UInt32(0))
-                more, deep, _ = self.trace(self.primary_ray(sensor, position, number), number, True)
-                color += more
-                too_deep |= deep
-                sample += 1
-        return color, too_deep
 
     def pixel_key(self, corner):
         """The key of the random numbers of pixels, by their top left corners (Point2d)."""
@@ -668,19 +476,6 @@ class Whitted(mi.SamplingIntegrator):
         if self.points == "independent":
             key, number = samples.make_independent(key, number)
         return samples.Sample(key, number)
-
-    @staticmethod
-    def sample_offsets(spp):
-        """Positions of a pixel's samples, in pixels from its top left corner.
-
-        Raises:
-            ValueError: `spp` is no square number.
-
-        """
-        n = math.isqrt(spp)
-        if n * n != spp:
-            raise ValueError(f"whitted: samples per pixel are laid out as a grid, and {spp} is no square number")
-        return [((cell % n + 0.5) / n, (cell // n + 0.5) / n) for cell in range(spp)]
 
     def primary_ray(self, sensor, position, sample) -> Ray:
         """The ray of a `sample` through a film position (Point2d, in pixels), in double precision where the sensor has
@@ -715,17 +510,6 @@ class Whitted(mi.SamplingIntegrator):
     def to_string(self):
         way = f"{self.intersections}, {self.precision}"
         return f"Whitted[{len(self.surfaces)} surfaces, {way}, max_depth={self.max_depth}]"
-
-
-@dataclass(frozen=True)
-class PassSums:
-    """What is drawn of a picture in whole passes: their number, the sums of the samples' colours (Color3d), and the
-    pixels in which the depth limit dropped a ray (Bool).
-    """
-
-    passes: int
-    colors: Any
-    too_deep: Any
 
 
 class Bsdfs:
@@ -766,32 +550,6 @@ def _materials(props, surfaces):
         if not hasattr(bsdfs[name], "COEFFICIENTS"):
             raise ValueError(f"whitted: every material is a 'phong' BSDF, '{name}' is a {type(bsdfs[name]).__name__}")
     return bsdfs
-
-
-def _rows(film, first, count):
-    """The numbers (UInt32) of `count` pixels from row `first` of the film's crop window on."""
-    return dr.arange(mi.UInt32, count) + dr.opaque(mi.UInt32, first * film.crop_size().x)
-
-
-def _corners(film, pixel):
-    """Top left corners (Point2d) of pixels, by their numbers in the film's crop window, row by row."""
-    columns = dr.opaque(mi.UInt32, film.crop_size().x)  # opaque, so that pictures of all sizes share one kernel
-    row = pixel // columns
-    return mi.Point2d(pixel - row * columns, row) + mi.Point2d(film.crop_offset())
-
-
-def _block(bands, film):
-    """Rows of pixel colours as a film takes them up: cheaper than to splat them, and the same for a box filter."""
-    width, height = film.crop_size()
-    # After red, green and blue come alpha, where the film has it, and the sum of the filter's weights: all 1.
-    count = film.base_channels_count() + 1
-    ones = dr.full(mi.Float, 1, width * height)
-    channels = [dr.concat([band[k] for band in bands]) for k in range(3)] + [ones] * (count - 3)
-    pixels = dr.empty(mi.Float, width * height * count)
-    index = dr.arange(mi.UInt32, width * height) * count
-    for k, channel in enumerate(channels):
-        dr.scatter(pixels, channel, index + k)
-    return mi.ImageBlock(mi.TensorXf(pixels, (height, width, count)), film.crop_offset(), film.rfilter(), border=False)
 
 
 mi.register_integrator("whitted", Whitted)
