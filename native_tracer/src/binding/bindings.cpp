@@ -1,5 +1,6 @@
 // The Python module: a builder for scenes here, rendering in bind_render.cpp, half-spaces in bind_halfspaces.cpp,
-// trees over boxes in bind_bvh.cpp, points on surfaces in bind_incidence.cpp, a reserve of memory in bind_memory.cpp.
+// trees over boxes in bind_bvh.cpp, points on surfaces in bind_incidence.cpp, a reserve of memory in bind_memory.cpp,
+// scene files in bind_scene_file.cpp.
 
 #include "binding/bindings.h"
 
@@ -298,4 +299,5 @@ NB_MODULE(_core, module) {
     bind_incidence(module);
     bind_memory(module);
     bind_sampler(module);
+    bind_scene_file(module);
 }

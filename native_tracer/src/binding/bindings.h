@@ -10,4 +10,5 @@ void bind_halfspaces(nanobind::module_& module);
 void bind_bvh(nanobind::module_& module);
 void bind_incidence(nanobind::module_& module);
 void bind_memory(nanobind::module_& module);
+void bind_scene_file(nanobind::module_& module);
 void bind_sampler(nanobind::module_& module);
