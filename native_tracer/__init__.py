@@ -14,6 +14,26 @@ Everything is in the scene's own terms and needs neither NumPy nor the parser:
 (60, 80, 3)
 """
 
-from native_tracer._core import Image, PassSums, Scene, count_nan_pixels, keep_reserve, quantize, render, trace_pixel
+from native_tracer._core import (
+    Image,
+    PassSums,
+    Scene,
+    count_nan_pixels,
+    keep_reserve,
+    quantize,
+    render,
+    scan_scene,
+    trace_pixel,
+)
 
-__all__ = ["Image", "PassSums", "Scene", "count_nan_pixels", "keep_reserve", "quantize", "render", "trace_pixel"]
+__all__ = [
+    "Image",
+    "PassSums",
+    "Scene",
+    "count_nan_pixels",
+    "keep_reserve",
+    "quantize",
+    "render",
+    "scan_scene",
+    "trace_pixel",
+]

@@ -3,6 +3,7 @@
 """
 
 from collections.abc import Callable, Sequence
+from types import ModuleType
 from typing import Any, Literal, TypedDict, overload
 
 from typing_extensions import Buffer
@@ -195,6 +196,15 @@ def keep_reserve() -> None:
 
 def quantize(pixels: Buffer) -> bytes:
     """8-bit RGB of a float32 buffer: the nearest of 255 levels to c, halves up, c clamped to 0..1, a NaN black."""
+
+def scan_scene(text: bytes, model: ModuleType) -> tuple[Any, ...] | None:
+    """Read a scene file, if it holds nothing unusual; None where a closer look is needed, be it wrong or not.
+
+    `model` has the classes of what is read, the module `converter.scene.model`.
+
+    Gives the camera, lights, pigments, finishes, objects, and the lines of lights, pigments and finishes. For a texmap
+    there is (name, p0, p1, line of the name).
+    """
 
 def threaded_bvh(low: Buffer, high: Buffer) -> tuple[memoryview[float], memoryview[int], memoryview[int]]:
     """The arrays of a threaded tree over boxes; see `native_tracer.bvh`."""

@@ -12,9 +12,22 @@ from hypothesis import strategies as st
 from strategies import scenes
 
 from converter.analysis.notices import ior_notices, scene_notices
-from converter.scene import geometry
+from converter.scene import kept
 from converter.scene.depth import MAX_DEPTH
-from converter.scene.model import Camera, Finish, Light, Object, Polyhedron, Scene, Solid, Sphere
+from converter.scene.geometry import scene_facts, simplified
+from converter.scene.model import (
+    Camera,
+    Csg,
+    Finish,
+    Light,
+    Object,
+    Operand,
+    Polyhedron,
+    Scene,
+    Shape,
+    Solid,
+    Sphere,
+)
 from converter.scene.needs import eta, is_index, scene_needs
 from converter.scene.parser import load_scene, parse_scene
 from converter.scene.settings import IorReading, Settings
@@ -228,7 +241,28 @@ def test_facts_of_polyhedra_are_worked_out_once(monkeypatch: pytest.MonkeyPatch,
     smaller = replace(scene, objects=scene.objects[1:])
     assert scene_needs(smaller, Settings()).bounded == (False,)
     assert scene_needs(scene, Settings()) == needs
-    assert len(calls) == 3
+    assert len(calls) == 2
+    identity = id(scene)
+    assert identity in kept._kept
     del scene
     gc.collect()
-    assert geometry._latest is None
+    assert identity not in kept._kept
+
+
+def test_shapes_are_looked_into_once_where_some_are_simplified(monkeypatch: pytest.MonkeyPatch) -> None:
+    looked: list[Shape] = []
+    facts = polyhedron.facts
+
+    def noted(shapes: Sequence[Polyhedron]) -> list[Facts]:
+        looked.extend(shapes)
+        return facts(shapes)
+
+    monkeypatch.setattr(polyhedron, "facts", noted)
+    wedge = Polyhedron(((0, 1, 0, -1), (1, 0, 0, -2)))
+    ball = Csg((Operand("+", Sphere((0, 0, 0), 1)),))
+    scene = replace(scene_of(MATTE), objects=(Object(0, 0, wedge), Object(0, 0, ball)))
+    scene_needs(scene, Settings())
+    simpler = simplified(scene)
+    assert simpler.objects[1].shape == Sphere((0, 0, 0), 1)
+    assert scene_needs(simpler, Settings()).boxes == (scene_facts(scene)[0][:2], ((-1, -1, -1), (1, 1, 1)))
+    assert looked == [wedge]

@@ -5,6 +5,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from converter.commands.exits import tell
+from converter.scene import loading
 from converter.scene.model import Scene
 from converter.scene.settings import Settings
 
@@ -26,13 +27,11 @@ def load(path: str | Path) -> Scene:
         SceneError: the file is no scene.
 
     """
-    from converter.scene.parser import load_scene
-
     with suppress(ImportError):  # it is not built: whoever needs it says so
         from native_tracer import keep_reserve
 
         keep_reserve()
-    return load_scene(path)
+    return loading.load(path)
 
 
 def load_with_notices(

@@ -2,26 +2,21 @@
 
 from collections.abc import Sequence
 from dataclasses import replace
-from weakref import ReferenceType, ref
 
 from converter.scene.errors import Problem
+from converter.scene.kept import kept_with
 from converter.scene.model import Scene, Shape
 from converter.shapes.kind import Facts
 from converter.shapes.table import SHAPE_KINDS, shape_kind
 
-_latest: tuple[ReferenceType[Scene], tuple[Facts, ...]] | None = None
-
 
 def scene_facts(scene: Scene) -> tuple[Facts, ...]:
-    """What is known of each object's shape. All in one go, kind by kind.
-
-    The latest scene's facts are kept for as long as it lives: checking a scene, modelling it, and closing its unbounded
-    bodies take the same ones.
-    """
-    global _latest
-    if _latest is None or _latest[0]() is not scene:
-        _latest = (ref(scene, _forget), _looked_into([o.shape for o in scene.objects]))
-    return _latest[1]
+    """What is known of each object's shape. All in one go, kind by kind, and once for each scene."""
+    kept = kept_with(scene)
+    if "facts" not in kept:
+        kept["facts"] = _looked_into([o.shape for o in scene.objects])
+    found: tuple[Facts, ...] = kept["facts"]
+    return found
 
 
 def _looked_into(shapes: Sequence[Shape]) -> tuple[Facts, ...]:
@@ -30,23 +25,18 @@ def _looked_into(shapes: Sequence[Shape]) -> tuple[Facts, ...]:
     return tuple([next(found[type(shape)]) for shape in shapes])
 
 
-def _forget(scene: ReferenceType[Scene]) -> None:
-    global _latest
-    if _latest is not None and _latest[0] is scene:
-        _latest = None
-
-
 def simplified(scene: Scene) -> Scene:
     """`scene` with the simplest shapes that are the same; itself if it has them."""
-    objects = []
-    for o in scene.objects:
-        shape = shape_kind(o.shape).simplified(o.shape)
-        objects.append(o if shape is o.shape else replace(o, shape=shape))
-    return (
-        scene
-        if all(a is b for a, b in zip(objects, scene.objects, strict=True))
-        else replace(scene, objects=tuple(objects))
-    )
+    shapes = [shape_kind(o.shape).simplified(o.shape) for o in scene.objects]
+    changed = [i for i, (shape, o) in enumerate(zip(shapes, scene.objects, strict=True)) if shape is not o.shape]
+    if not changed:
+        return scene
+    objects, facts = list(scene.objects), list(scene_facts(scene))
+    for i, found in zip(changed, _looked_into([shapes[i] for i in changed]), strict=True):
+        objects[i], facts[i] = replace(objects[i], shape=shapes[i]), found
+    result = replace(scene, objects=tuple(objects))
+    kept_with(result)["facts"] = tuple(facts)
+    return result
 
 
 def check_geometry(scene: Scene, facts: Sequence[Facts] | None = None) -> list[Problem]:

@@ -6,6 +6,7 @@ from dataclasses import dataclass
 from converter.scene.depth import DepthLimit, depth_limit, follows
 from converter.scene.effects import Effect, scene_effects
 from converter.scene.geometry import scene_facts
+from converter.scene.kept import kept_with
 from converter.scene.model import Color, Finish, Scene, Vector
 from converter.scene.settings import IorReading, Settings
 from converter.shapes.kind import Facts
@@ -71,7 +72,15 @@ class SceneNeeds:
 
 
 def scene_needs(scene: Scene, settings: Settings) -> SceneNeeds:
-    """Work out what `scene`, drawn with `settings`, needs."""
+    """What `scene`, drawn with `settings`, needs; worked out once."""
+    kept = kept_with(scene)
+    if settings not in kept:
+        kept[settings] = _worked_out(scene, settings)
+    found: SceneNeeds = kept[settings]
+    return found
+
+
+def _worked_out(scene: Scene, settings: Settings) -> SceneNeeds:
     finishes = tuple(sorted({o.finish for o in scene.objects}))
     used = [scene.finishes[i] for i in finishes]
     largest = max((max(f.kr, f.kt) for f in used), default=0.0)

@@ -8,10 +8,8 @@ Reading is first by words (`sections`), as the format says, and again by lines (
 """
 
 import errno
-import gc
 import os
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
@@ -25,6 +23,7 @@ from converter.scene.model import Camera, Scene, Texmap
 from converter.scene.reader import Reader
 from converter.scene.sections import SECTIONS, Section, is_alone, pass_over_surplus, read_by_count
 from converter.scene.tokens import COMMENT_HINT, SEPARATOR_HINT, Words, decode, number, whole
+from converter.uncollected import uncollected
 
 _Read = TypeVar("_Read")
 MOST_PROBLEMS = 20
@@ -78,7 +77,7 @@ def _loaded(text: Words, confined: bool = False) -> Scene:
     scene = _find_textures(scene, reader, confined)
     problems: list[Problem] = []
     if scene:
-        with _uncollected():
+        with uncollected():
             problems = check_geometry(scene)
     return _checked(scene, reader, problems)
 
@@ -109,7 +108,7 @@ def read_words(text: Words, start: Callable[[Words], Reader] = Reader) -> tuple[
     if not text.has(0):
         reader.complain(0, "the scene is empty")
         return None, reader
-    with _uncollected():
+    with uncollected():
         scene = _read_scene(reader, in_lines=False)
         if reader.misread and not reader.aligned:
             extended = start(text)
@@ -122,18 +121,6 @@ def read_words(text: Words, start: Callable[[Words], Reader] = Reader) -> tuple[
             reader.extended = True
             _read_scene(reader, in_lines=True)
     return scene, reader
-
-
-@contextmanager
-def _uncollected() -> Iterator[None]:
-    """No garbage collection: it would look again and again at all that is read, a tenth of the time, and find none."""
-    enabled = gc.isenabled()
-    gc.disable()
-    try:
-        yield
-    finally:
-        if enabled:
-            gc.enable()
 
 
 def _read_scene(reader: Reader, in_lines: bool) -> Scene | None:

@@ -4,8 +4,7 @@
 #include <array>
 #include <cmath>
 #include <cstring>
-#include <initializer_list>
-#include <string>
+#include <string_view>
 #include <utility>
 
 #include "binding/bindings.h"
@@ -35,7 +34,7 @@ nb::object checked(PyObject* made) {
 
 // Numbers of Python; of those that a scene repeats many share an object.
 class Numbers {
-   public:
+ public:
     nb::object operator()(double value) {
         std::size_t bits = 0;
         static_assert(sizeof bits == sizeof value);
@@ -47,7 +46,7 @@ class Numbers {
         return shared.number;
     }
 
-   private:
+ private:
     struct Shared {
         std::size_t bits = 0;
         nb::object number;
@@ -58,7 +57,7 @@ class Numbers {
 // What makes objects of a frozen dataclass as its `__init__` does, field by field, but without its way through Python.
 template <std::size_t Size>
 class Maker {
-   public:
+ public:
     Maker(const nb::object& model, const char* name, const std::array<const char*, Size>& fields)
         : type_(model.attr(name)) {
         for (std::size_t i = 0; i < Size; ++i) {
@@ -77,7 +76,7 @@ class Maker {
         return made;
     }
 
-   private:
+ private:
     nb::object type_;
     std::array<nb::object, Size> fields_;
 };
@@ -85,7 +84,7 @@ class Maker {
 // ---- The sections of a file -------------------------------------------------------------------------------------------
 
 class Scanner {
-   public:
+ public:
     Scanner(std::string_view text, const nb::object& model)
         : words_(text),
           model_(model),
@@ -122,7 +121,7 @@ class Scanner {
                               nb::tuple(light_lines), nb::tuple(pigment_lines), nb::tuple(finish_lines));
     }
 
-   private:
+ private:
     using Vector = std::array<double, 3>;
 
     template <std::size_t Size>
@@ -147,8 +146,8 @@ class Scanner {
         const Vector eye = numbers<3>(), look_at = numbers<3>(), up = numbers<3>();
         const double fovy = words_.number();
         expect(fovy > 0 && fovy < 180);
-        const Vector view = direction({look_at[0] / 2 - eye[0] / 2, look_at[1] / 2 - eye[1] / 2,
-                                       look_at[2] / 2 - eye[2] / 2});
+        const Vector view =
+            direction({look_at[0] / 2 - eye[0] / 2, look_at[1] / 2 - eye[1] / 2, look_at[2] / 2 - eye[2] / 2});
         const auto [a, b, c] = view;
         const auto [x, y, z] = direction(up);
         // The sine of the angle between them. It need only be above 1e-9, but what is as small is looked at closer.
@@ -185,7 +184,7 @@ class Scanner {
         const std::string_view name = words_.next();
         const long line = words_.line();
         const auto p0 = numbers<4>(), p1 = numbers<4>();
-        return nb::make_tuple(std::string(name), tuple_of(p0), tuple_of(p1), line);
+        return nb::make_tuple(nb::str(name.data(), name.size()), tuple_of(p0), tuple_of(p1), line);
     }
 
     nb::object finish() {
@@ -270,9 +269,10 @@ nb::object scan_scene(const nb::bytes& text, const nb::object& model) {
 }  // namespace
 
 void bind_scene_file(nb::module_& module) {
-    module.def("scan_scene", &scan_scene, "text"_a, "model"_a,
-               "Read a scene file, if it holds nothing unusual; None where a closer look is needed, be it wrong or not.\n"
-               "`model` has the classes of what is read, the module `converter.scene.model`.\n\n"
-               "Gives the camera, lights, pigments, finishes, objects, and the lines of lights, pigments and finishes.\n"
-               "For a texmap there is (name, p0, p1, line of the name).");
+    module.def(
+        "scan_scene", &scan_scene, "text"_a, "model"_a,
+        "Read a scene file, if it holds nothing unusual; None where a closer look is needed, be it wrong or not.\n"
+        "`model` has the classes of what is read, the module `converter.scene.model`.\n\n"
+        "Gives the camera, lights, pigments, finishes, objects, and the lines of lights, pigments and finishes.\n"
+        "For a texmap there is (name, p0, p1, line of the name).");
 }

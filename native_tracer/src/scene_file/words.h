@@ -16,7 +16,7 @@ namespace whitted::scene_file {
 struct Unusual {};
 
 class Words {
-   public:
+ public:
     explicit Words(std::string_view text) : text_(text) {
         if (text.find('\0') != text.npos) {
             throw Unusual{};
@@ -84,7 +84,7 @@ class Words {
         return value;
     }
 
-   private:
+ private:
     static bool is_blank(char c) { return c == ' ' || c == '\n' || c == '\t' || c == '\r'; }
 
     bool ends_line() const {
