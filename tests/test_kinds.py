@@ -12,7 +12,8 @@ from converter.pigments.table import PIGMENT_KINDS, PIGMENT_WORDS
 from converter.renderers.methods import METHODS
 from converter.scene.parser import load_scene, parse_scene
 from converter.scene.writer import write_scene
-from converter.shapes.table import SHAPE_KINDS, SHAPE_READERS
+from converter.shapes.readers import SHAPE_READERS
+from converter.shapes.table import SHAPE_KINDS
 
 WORDS = [*PIGMENT_WORDS, *SHAPE_READERS]
 KINDS = [*(kind.SPELLINGS[0] for kind in PIGMENT_KINDS.values()), *(kind.NAME for kind in SHAPE_KINDS.values())]

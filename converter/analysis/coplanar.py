@@ -8,8 +8,7 @@ plate without thickness: a ray then enters it exactly where it leaves. Only last
 for bodies that move, too.
 """
 
-from dataclasses import replace
-
+from converter.frozen import replace
 from converter.scene.geometry import scene_facts
 from converter.scene.model import Plane, Scene
 from converter.shapes.same_surfaces import same_planes

@@ -1,13 +1,13 @@
 """From a scene file to an image file, as `raytrace` and `whitted render` do it."""
 
 import time
-from dataclasses import dataclass
 from pathlib import Path
 from typing import TYPE_CHECKING
 
 from converter.commands.notes import depth_warning, load_with_notices, say
 from converter.commands.progress import ProgressBar
 from converter.files import check_apart, is_special
+from converter.frozen import dataclass
 from converter.images.write import check_writable, write_image
 from converter.pigments.table import pigment_kind
 from converter.renderers.base import (

@@ -4,7 +4,6 @@ import argparse
 import math
 import os
 from collections.abc import Sequence
-from dataclasses import fields
 from typing import NoReturn
 
 from converter.commands.exits import UsageError
@@ -231,5 +230,5 @@ def settings_from(arguments: argparse.Namespace) -> Settings:
     given = vars(arguments)
     if (given.get("width") is None) != (given.get("height") is None):
         raise UsageError("a WIDTH needs a HEIGHT after it")
-    known = {f.name for f in fields(Settings)}
+    known = Settings.__match_args__
     return Settings(**{name: value for name, value in given.items() if name in known and value is not None})

@@ -1,8 +1,7 @@
 """Whether it shows in a picture how a finish's `ior` is read."""
 
-from dataclasses import replace
-
 from converter.analysis.notices import ior_notices
+from converter.frozen import replace
 from converter.renderers.native import build_scene, native_module
 from converter.scene.model import Scene
 from converter.scene.needs import scene_needs

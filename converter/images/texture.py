@@ -2,11 +2,11 @@
 
 import os
 import stat
-from dataclasses import dataclass
 from itertools import islice
 from pathlib import Path
 from typing import IO, Any
 
+from converter.frozen import dataclass
 from converter.images import ppm
 
 MOST_SAMPLES_A_BYTE, MOST_A_BYTE_OF_LARGE = 10_000, 256

@@ -1,10 +1,10 @@
 """A solid checkerboard of cubes."""
 
 from collections.abc import Sequence
-from dataclasses import asdict, replace
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from converter.frozen import replace
 from converter.pigments.kind import Box
 from converter.scene.errors import shown
 from converter.scene.fields import RGB, Numbers
@@ -67,7 +67,7 @@ def edge_margin(pigment: Checker, p: "Floats") -> float:
 
 def facts(pigment: Checker) -> dict[str, Any]:
     """Its colours and size."""
-    return asdict(pigment)
+    return {"first": pigment.first, "second": pigment.second, "size": pigment.size}
 
 
 def summary(facts: dict[str, Any]) -> str:

@@ -3,11 +3,11 @@
 import math
 import os
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import lru_cache
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from converter.frozen import replace
 from converter.pigments.kind import Box
 from converter.scene.errors import place, shown
 from converter.scene.fields import Lost, Numbers

@@ -1,9 +1,9 @@
 """The interface between a renderer and everything that uses one."""
 
 from collections.abc import Callable, Collection, Mapping, Sequence
-from dataclasses import dataclass, field
 from typing import TYPE_CHECKING, Any, ClassVar, Protocol, TypeGuard
 
+from converter.frozen import dataclass, field
 from converter.scene.effects import Effect
 from converter.scene.model import Scene
 from converter.scene.needs import SceneNeeds

@@ -3,12 +3,12 @@
 import os
 import time
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import partial
 from types import ModuleType
 from typing import TYPE_CHECKING, Any, ClassVar, Literal
 
 from converter.analysis.coplanar import with_planes_shared
+from converter.frozen import dataclass
 from converter.pigments.table import pigment_kind
 from converter.renderers.base import (
     Interrupted,
@@ -39,7 +39,7 @@ EFFECTS: tuple[Effect, ...] = ("soft shadows", "glossy rays", "depth of field", 
 """What of distributed ray tracing it draws."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, slots=True)
 class NativeRenderer:
     """Draws with `native_tracer`.
 

@@ -13,11 +13,11 @@ below the one that waits as below itself, if not more, by that bound: so if W ra
 """
 
 import math
+from array import array
 from collections.abc import Iterable
-from ctypes import c_float
-from dataclasses import dataclass
 from typing import Literal
 
+from converter.frozen import dataclass
 from converter.scene.model import Finish
 from converter.scene.settings import Settings
 
@@ -113,7 +113,7 @@ def _in_steps(pairs: Iterable[tuple[float, float]], largest: float, cutoff: floa
 
     def cost(coefficient: float) -> int:
         # Rounded, so that what is as heavy in single precision costs the same.
-        rounded = c_float(min(coefficient, 1.0)).value
+        rounded = array("f", [min(coefficient, 1.0)])[0]
         return math.floor(max(-math.log2(rounded or coefficient) - SLACK, 0.0) / step)
 
     costs: list[Costs] = []

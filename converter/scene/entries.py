@@ -7,16 +7,17 @@ that can be read. How each kind of pigment and shape is read stands in `converte
 """
 
 from collections.abc import Mapping
-from dataclasses import replace
 from math import hypot, sqrt
 
+from converter.frozen import replace
 from converter.pigments.table import PIGMENT_KINDS, PIGMENT_WORDS
 from converter.scene.errors import shown
 from converter.scene.fields import MOVE, RGB, Lost, Numbers
 from converter.scene.model import Camera, Finish, Light, Object, Pigment, Vector
 from converter.scene.reader import FINISH_INDEX, PIGMENT_INDEX, Reader
 from converter.scene.tokens import either, found
-from converter.shapes.table import SHAPE_KINDS, SHAPE_READERS, ShapeReader
+from converter.shapes.readers import SHAPE_READERS, ShapeReader
+from converter.shapes.table import SHAPE_KINDS
 
 PIGMENT_NAMES = either(kind.SPELLINGS[0] for kind in PIGMENT_KINDS.values())
 SHAPE_NAMES = either(kind.NAME for kind in SHAPE_KINDS.values())

@@ -1,9 +1,10 @@
 """What is wrong with a scene file, told so that it can be found and mended."""
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+
+from converter.frozen import dataclass
 
 TAB = 8
 """Distance of tab stops, as GNU's coding standards count columns and as terminals show them."""

@@ -1,8 +1,8 @@
 """Whether the shapes of a scene exist, and what is known of each."""
 
 from collections.abc import Sequence
-from dataclasses import replace
 
+from converter.frozen import replace
 from converter.scene.errors import Problem
 from converter.scene.kept import kept_with
 from converter.scene.model import Scene, Shape

@@ -4,9 +4,10 @@ Indices (`Object.pigment`, `Object.finish`) count from 0, as in the file. Length
 degrees, colours linear RGB that is meant to lie in 0..1 but is never clamped here.
 """
 
-from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Literal
+
+from converter.frozen import dataclass, field
 
 Vector = tuple[float, float, float]
 Color = tuple[float, float, float]

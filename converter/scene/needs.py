@@ -1,8 +1,8 @@
 """What a scene needs of a renderer, worked out once, so that neither renderer models more than that."""
 
 import sys
-from dataclasses import dataclass
 
+from converter.frozen import dataclass
 from converter.scene.depth import DepthLimit, depth_limit, follows
 from converter.scene.effects import Effect, scene_effects
 from converter.scene.geometry import scene_facts

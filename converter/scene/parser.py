@@ -10,10 +10,10 @@ Reading is first by words (`sections`), as the format says, and again by lines (
 import errno
 import os
 from collections.abc import Callable
-from dataclasses import replace
 from pathlib import Path
 from typing import Any, TypeVar
 
+from converter.frozen import replace
 from converter.scene import entries
 from converter.scene.errors import Problem, SceneError, place, shown
 from converter.scene.fields import Lost

@@ -21,7 +21,7 @@ from converter.scene.tokens import (
     why_no_number,
 )
 from converter.shapes.csg_program import OPERATIONS
-from converter.shapes.table import SHAPE_READERS
+from converter.shapes.readers import SHAPE_READERS
 
 MOST_NOTED = 1000
 """Problems that are kept, so that a large file of nothing else takes little room: those told are the first of them."""

@@ -1,8 +1,8 @@
 """How to draw a scene: everything that the command line may change and the scene file does not say."""
 
-from dataclasses import dataclass
 from typing import Literal
 
+from converter.frozen import dataclass
 from converter.scene.model import Color
 
 PixelSample = Literal["corner", "center"]

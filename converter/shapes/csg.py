@@ -50,7 +50,7 @@ def read(reader: "Reader", at: int) -> tuple[Csg, int]:
 def _read(reader: "Reader", at: int, level: int, leaves: int) -> tuple[Csg, int]:
     """A csg that is the `level`-th in one another, and has so many leaves before it."""
     from converter.scene.entries import body  # late: it reads all kinds of shapes, of which this is one
-    from converter.shapes.table import SHAPE_READERS
+    from converter.shapes.readers import SHAPE_READERS
 
     if level > MOST_LEVELS:
         raise Lost(at, f"more than {MOST_LEVELS} csgs are in one another")

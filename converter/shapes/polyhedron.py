@@ -8,7 +8,6 @@ from converter.scene.errors import shown
 from converter.scene.fields import Lost, Numbers
 from converter.scene.model import Plane, Polyhedron, Vector
 from converter.scene.numerals import numerals
-from converter.scene.tokens import whole
 from converter.shapes.kind import Distances, Facts, Horizon, Intersection
 from converter.to_povray.text import number, vector
 
@@ -31,6 +30,8 @@ MOST_TURNED = 64
 
 def read(reader: "Reader", at: int) -> tuple[Polyhedron, int]:
     """`polyhedron COUNT`, and four numbers for each plane."""
+    from converter.scene.tokens import whole
+
     word = reader.word(at + 1, "the polyhedron's number of planes")
     count = whole(word)
     if not count:
@@ -70,6 +71,8 @@ def _read_plane(reader: "Reader", at: int) -> Plane:
 
 def announced(word: str) -> str:
     """`5 planes are announced`, for the word that says so."""
+    from converter.scene.tokens import whole
+
     return f"{shown(word)[1:-1]} {'plane is' if whole(word) == 1 else 'planes are'} announced"
 
 

@@ -3,14 +3,15 @@
 from collections.abc import Mapping
 from typing import Any
 
+from converter.late import LateModule
 from converter.scene.model import Polyhedron, Primitive, Quadric, Shape, Sphere
-from converter.shapes import polyhedron, quadric, sphere
+from converter.shapes import polyhedron, sphere
 from converter.shapes.kind import ShapeKind
 
 PRIMITIVE_KINDS: Mapping[type[Shape], ShapeKind[Any]] = {
     Sphere: sphere,
     Polyhedron: polyhedron,
-    Quadric: quadric,
+    Quadric: LateModule("converter.shapes.quadric"),
 }
 """The module of each class of primitives."""
 
