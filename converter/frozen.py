@@ -10,6 +10,8 @@ from typing import TYPE_CHECKING, Any, ClassVar, get_origin
 
 __all__ = ["dataclass", "field", "replace"]
 
+_CLASS_VAR: Any = ClassVar
+
 
 class _Field:
     """What a field has besides its type: a default, or what makes one, and whether equality looks at it."""
@@ -43,7 +45,7 @@ class _Described:
         self._annotations, self._fields = annotations, fields
         self._known: dict[str, Any] | None = None
 
-    def __get__(self, record: Any, owner: type) -> dict[str, Any]:
+    def __get__(self, record: object, owner: type) -> dict[str, Any]:
         if self._known is None:
             import dataclasses
 
@@ -51,12 +53,15 @@ class _Described:
             for name, each in self._fields.items():
                 default = {"default_factory": each.factory} if each.factory else {"default": each.default}
                 members[name] = dataclasses.field(**default, compare=each.compare)
-            self._known = dataclasses.dataclass(type(owner.__name__, (), members)).__dataclass_fields__
-        return self._known
+            twin: Any = dataclasses.dataclass(type(owner.__name__, (), members))
+            self._known = twin.__dataclass_fields__
+        return self._known or {}
 
 
 def _made(cls: type, weakref_slot: bool, eq: bool) -> type:
-    annotations = {name: each for name, each in cls.__annotations__.items() if get_origin(each) is not ClassVar}
+    annotations = {
+        name: each for name, each in cls.__annotations__.items() if getattr(each, "__origin__", None) is not ClassVar
+    }
     names = tuple(annotations)
     given = {name: cls.__dict__[name] for name in names if name in cls.__dict__}
     fields = {name: each if isinstance(each, _Field) else _Field(default=each) for name, each in given.items()}

@@ -53,6 +53,9 @@ def _dispatch(words: list[str]) -> int:
         return OK
     from pathlib import Path
 
+    if settings := _as_stated(words):
+        _draw(Path(words[0]), Path(words[1]), settings)
+        return OK
     from converter.commands.options import settings_from
     from converter.commands.results import standard_output_shared
 
@@ -60,6 +63,27 @@ def _dispatch(words: list[str]) -> int:
     with standard_output_shared(arguments):
         _draw(Path(arguments.scene), arguments.out, settings_from(arguments))
     return OK
+
+
+def _as_stated(words: list[str]) -> "Settings | None":
+    """The settings of `SCENE OUT [WIDTH HEIGHT]`, two files and small numbers: what that is takes no `argparse`, whose
+    import is a tenth of drawing a small picture.
+    """
+    from pathlib import Path
+
+    from converter.descriptors import named_descriptor
+    from converter.scene.settings import Settings
+
+    size = words[2:]
+    if len(words) not in (2, 4) or words[0].startswith("-") or words[1].startswith("-"):
+        return None
+    if not all(word.isascii() and word.isdigit() and len(word) < 5 and int(word) for word in size):
+        return None
+    if named_descriptor(Path(words[1])) is not None:
+        return None
+    if not size:
+        return Settings()
+    return Settings(width=int(size[0]), height=int(size[1]))
 
 
 def _draw(scene: "Path", out: "Path", settings: "Settings") -> None:
