@@ -6,7 +6,7 @@ Here a class costs one compilation, of `__init__`; what `dataclasses` knows of i
 
 from collections.abc import Callable
 from operator import attrgetter
-from typing import TYPE_CHECKING, Any, ClassVar, get_origin
+from typing import TYPE_CHECKING, Any, ClassVar
 
 __all__ = ["dataclass", "field", "replace"]
 
