@@ -1,7 +1,7 @@
 # make render   draw a scene with Mitsuba and compare it with the native tracer
 # make test     run the tests
 # make check    run the linters, the type checker, and the compiler with warnings as errors
-# make figures  print the figures of the README, and draw its chart
+# make figures  print the figures of the README, put its tables into it, and draw its charts
 # make format   draw the pictures of docs/format.md
 # make stability  find where each method fails, and write docs/stability.md
 # make mutants  plant mistakes, and tell which of them the tests do not notice
@@ -43,12 +43,11 @@ check: .venv/.checkers
 	$(BIN)/cmake --build build/check
 
 figures: .venv/.installed
-	$(BIN)/python benchmarks/figures.py
-	$(BIN)/python benchmarks/growth.py
-	$(BIN)/python benchmarks/planes.py
-	$(BIN)/python benchmarks/refused.py
-	$(BIN)/python benchmarks/why.py
-	mkdir -p docs
+	@mkdir -p docs out
+	for program in figures.py "growth.py --chart docs/growth.png" planes.py refused.py why.py; do \
+	    $(BIN)/python benchmarks/$$program || exit; done >out/figures.txt
+	cat out/figures.txt
+	$(BIN)/python benchmarks/readme.py out/figures.txt
 	$(BIN)/whitted chart scenes/figure1.in -o docs/figure1.png
 
 format: .venv/.installed

@@ -16,11 +16,12 @@ import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Callable, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import partial
 from pathlib import Path
 
 import numpy as np
+from tables import print_table
 
 from converter.commands.adapting import Adapting
 from converter.compare.classes import CLASSES, Class, explain, less_exact
@@ -48,6 +49,7 @@ RUNS, FEW_RUNS = 11, 3
 RANDOM_SCENES = 200
 MOST_EXPLAINED = 100
 """Pixels of a picture whose rays are compared: of glass csgs some take a second."""
+POVRAY = "POV-Ray 3.7, its trace time"
 LIMITS = (4, 8, 32)
 """Of adaptive sampling, in levels of 255."""
 
@@ -85,24 +87,25 @@ def agreement() -> None:
         f"medians of {FEW_RUNS} runs in turn: Mitsuba's default method, Embree with exact surfaces, Embree alone with"
     )
     print("Waechter and Binder's offset, and with Mitsuba's own; POV-Ray's trace time, and that over native's")
-    heads = "".join(f"{name:>10}" for name in renderers)
-    print(f"{'':<18}{heads}{'native s':>12}{heads}{'POV-Ray':>10}{'over':>8}  default is")
+    seconds = [f"{name} s" for name in renderers]
+    heads = ["", *renderers, "native s", *seconds, "POV-Ray s", "over native", "default is"]
+    print_table("agreement", heads, map(partial(_agreement, renderers), sorted((ROOT / "scenes").glob("*.in"))))
+
+
+def _agreement(renderers: dict[str, Renderer], file: Path) -> list[str]:
+    """A scene's row: disagreeing pixels, seconds, and what the default method does."""
     others = {"POV-Ray": PovrayRenderer()} if shutil.which("povray") else {}
-    for file in sorted((ROOT / "scenes").glob("*.in")):
-        scene, settings = load_scene(file), Settings()
-        native = NativeRenderer()
-        truth = np.asarray(native.render(scene, settings).pixels)
-        pictures = {name: renderer.render(scene, settings) for name, renderer in renderers.items()}
-        wrong = [compare_pixels(truth, np.asarray(picture.pixels)).disagreeing for picture in pictures.values()]
-        times = _interleaved(
-            {name: _seconds(each, file) for name, each in {"native": native, **renderers, **others}.items()}, FEW_RUNS
-        )
-        medians = {name: statistics.median(values) for name, values in times.items()}
-        povray = medians.pop("POV-Ray", math.nan)
-        counts = "".join(f"{count:>10}" for count in wrong)
-        seconds = f"{medians['native']:>12.3f}" + "".join(f"{medians[name]:>10.3f}" for name in renderers)
-        seconds += f"{povray:>10.3f}{povray / medians['native']:>8.1f}"
-        print(f"{file.name:<18}{counts}{seconds}  {pictures['default'].statistics['intersections']}", flush=True)
+    scene, settings = load_scene(file), Settings()
+    native = NativeRenderer()
+    truth = np.asarray(native.render(scene, settings).pixels)
+    pictures = {name: renderer.render(scene, settings) for name, renderer in renderers.items()}
+    wrong = [compare_pixels(truth, np.asarray(picture.pixels)).disagreeing for picture in pictures.values()]
+    subjects = {name: _seconds(each, file) for name, each in {"native": native, **renderers, **others}.items()}
+    medians = {name: statistics.median(values) for name, values in _interleaved(subjects, FEW_RUNS).items()}
+    povray = medians.get("POV-Ray", math.nan)
+    told = [f"{medians[name]:.3g}" for name in ("native", *renderers)]
+    ratio = f"{povray / medians['native']:.1f}"
+    return [file.stem, *map(str, wrong), *told, f"{povray:.3g}", ratio, pictures["default"].statistics["intersections"]]
 
 
 def same_bytes() -> None:
@@ -159,10 +162,12 @@ def classes() -> None:
         "400 x 300, all scenes: pixels that differ from native double by more than 1/255; by what they are near to, of"
     )
     print(f"up to {MOST_EXPLAINED} a scene")
-    print(f"{'':<16}{'all':>7}{'of':>7}{''.join(f'{name:>{len(name) + 3}}' for name in CLASSES)}")
-    for name, by_class in counts.items():
-        columns = "".join(f"{by_class[kind]:>{len(kind) + 3}}" for kind in CLASSES)
-        print(f"{name:<16}{disagreeing[name]:>7}{by_class.total():>7}{columns}")
+    numbers = {
+        name: [disagreeing[name], by_class.total(), *(by_class[kind] for kind in CLASSES)]
+        for name, by_class in counts.items()
+    }
+    rows = ([name, *map(str, row)] for name, row in numbers.items())
+    print_table("classes", ["", "pixels", "of these", *CLASSES], rows)
 
 
 def speed() -> None:
@@ -170,38 +175,44 @@ def speed() -> None:
     print(f"Figure 1 at 800 x 600, {len(os.sched_getaffinity(0))} threads, seconds of {RUNS} runs in turn")
     with tempfile.TemporaryDirectory() as folder:
         subjects = {
-            "native double": _seconds(NativeRenderer(), FIGURE1),
-            "native float": _seconds(NativeRenderer("float"), FIGURE1),
-            "Mitsuba": _seconds(MitsubaRenderer(), FIGURE1),
-            "Mitsuba, meshes": _seconds(MitsubaRenderer(intersections="mesh"), FIGURE1),
-            "raytrace (process)": _process("raytrace", FIGURE1, Path(folder, "a.ppm")),
-            "whitted render (process)": _process("whitted", "render", FIGURE1, Path(folder, "b.ppm"), "--quiet"),
+            "native, double": _seconds(NativeRenderer(), FIGURE1),
+            "native, float": _seconds(NativeRenderer("float"), FIGURE1),
+            "Mitsuba, warm": _seconds(MitsubaRenderer(), FIGURE1),
+            "Mitsuba through meshes and Embree, warm": _seconds(MitsubaRenderer(intersections="mesh"), FIGURE1),
+            "Python, which imports nothing": _process(sys.executable, "-c", "pass"),
+            "`raytrace`, whole process": _process("raytrace", FIGURE1, Path(folder, "a.ppm")),
+            "`whitted render`, whole process, warm kernel cache": _process(
+                "whitted", "render", FIGURE1, Path(folder, "b.ppm"), "--quiet"
+            ),
         }
         if shutil.which("povray"):
-            subjects["POV-Ray (trace time)"] = _seconds(PovrayRenderer(), FIGURE1)
+            subjects[POVRAY] = _seconds(PovrayRenderer(), FIGURE1)
         times = _interleaved(subjects)
-    print(f"{'':<26}{'median':>9}{'least':>9}{'faster than POV-Ray, medians':>32}")
-    povray = statistics.median(times.get("POV-Ray (trace time)", [math.nan]))
+    povray = statistics.median(times.get(POVRAY, [math.nan]))
+    rows = []
     for name, values in times.items():
         median = statistics.median(values)
-        print(f"{name:<26}{median:>9.4f}{min(values):>9.4f}{povray / median:>30.1f} x")
+        faster = "" if name == POVRAY or "process" in name else f"{povray / median:.1f} x"
+        rows.append([name, f"{median:.3f}", f"{min(values):.3f}", faster])
+    print_table("speed", ["", "median", "least", "than POV-Ray, medians"], rows)
 
 
 def samples() -> None:
     """Seconds for more and more samples a pixel, and how often Mitsuba's kernel is launched for each."""
     counts, width, height = (1, 16, 64, 256), 320, 240
-    heads = "".join(f"{count:>8}" for count in counts)
     print(f"{width} x {height}, median seconds of {FEW_RUNS} runs in turn by samples a pixel, and launches a sample")
-    print(f"{'':<22}{heads}    launches{heads}")
+    print_table("samples", ["", *map(str, counts), "launches a sample"], _samples(counts, width, height))
+
+
+def _samples(counts: Sequence[int], width: int, height: int) -> Iterator[list[str]]:
     for name in ("figure1", "whitted", "prisms"):
         scene = load_scene(ROOT / "scenes" / f"{name}.in")
         for kind, renderer in (("native", NativeRenderer()), ("Mitsuba", MitsubaRenderer())):
             draw = {n: partial(renderer.render, scene, Settings(width=width, height=height, samples=n)) for n in counts}
             times = _interleaved({str(n): partial(_render_seconds, render) for n, render in draw.items()}, FEW_RUNS)
-            line = f"{name:<12}{kind:<10}" + "".join(f"{statistics.median(spent):>8.3f}" for spent in times.values())
-            if kind == "Mitsuba":
-                line += f"{'':<12}" + "".join(f"{_launches(render) / n:>8.3f}" for n, render in draw.items())
-            print(line, flush=True)
+            seconds = [f"{statistics.median(spent):.3g}" for spent in times.values()]
+            launches = [f"{_launches(render) / n:.2g}" for n, render in draw.items()] if kind == "Mitsuba" else []
+            yield [f"{name}, {kind}", *seconds, ", ".join(launches)]
 
 
 def sampled() -> None:
