@@ -95,6 +95,6 @@ def test_growth() -> None:
     growth = ROOT / "benchmarks" / "growth.py"
     options = ["--levels", "1", "--galleries", "3", "--renderers", "native", "--size", "8", "6", "--runs", "1"]
     out = subprocess.run([sys.executable, growth, *options], capture_output=True, text=True, check=True).stdout
-    rows = [line.split() for line in out.splitlines() if line.startswith("native")]
-    assert [row[1:3] for row in rows] == [["1", "11"], ["3", "4"]]
-    assert all(float(cell) >= 0 for row in rows for cell in row[3:])
+    rows = [[cell.strip() for cell in line.strip("|").split("|")] for line in out.splitlines() if line.startswith("| ")]
+    assert [row[:2] for row in rows[1:]] == [["sphereflake 1", "11"], ["gallery 3", "4"]]
+    assert all(float(number) >= 0 for row in rows[1:] for cell in row[2:] for number in cell.split(" + "))
