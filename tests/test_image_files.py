@@ -245,8 +245,8 @@ def test_an_interrupt_leaves_the_old_picture(
         path.write_bytes(b"half of it")
         raise error
 
-    for writer in ("_write_ppm", "_write_png", "_write_other"):
-        monkeypatch.setattr(write, writer, half)
+    monkeypatch.setattr(write, "_write_ppm", half)
+    monkeypatch.setattr(write, "_write_other", half)
     with pytest.raises((KeyboardInterrupt, MemoryError, ImageError)):
         write_image(tmp_path / name, PIXELS, 2, 3)
     assert files(tmp_path) == [name]

@@ -1,4 +1,4 @@
-"""Writes pictures: PPM and PNG directly, all other formats through OpenImageIO.
+"""Writes pictures: PPM directly, all other formats through OpenImageIO.
 
 No object of OpenImageIO is kept at module level: nanobind would report it as leaked when Mitsuba is loaded as well.
 """
@@ -78,7 +78,7 @@ def write_image(path: str | Path, pixels: Any, width: int, height: int, ending: 
         raise ValueError(f"expected {expected}, found {values.nbytes} bytes of format {values.format!r}")
     try:
         ending = _known(path, ending)
-        write = {".ppm": _write_ppm, ".png": _write_png}.get(ending, _write_other)
+        write = _write_ppm if ending == ".ppm" else _write_other
         with replacing(path if is_special(path) else _target(path), ending) as temporary:
             write(temporary, values, width, height)
     except BrokenPipeError:
@@ -93,14 +93,6 @@ def _write_ppm(path: Path, values: memoryview, width: int, height: int) -> None:
     with path.open("xb") as file:
         file.write(b"P6\n%d %d\n255\n" % (width, height))
         file.write(quantize(values))
-
-
-def _write_png(path: Path, values: memoryview, width: int, height: int) -> None:
-    from converter.images.png import png
-    from native_tracer import quantize
-
-    with path.open("xb") as file:
-        file.writelines(png(quantize(values), width, height))
 
 
 def _write_other(path: Path, values: memoryview, width: int, height: int) -> None:
@@ -143,8 +135,6 @@ def _known(path: Path, given: str | None) -> str:
     ending = (path.suffix if given is None else given).lower()
     if ending == ".ppm" or (not ending and is_special(path)):
         return ".ppm"
-    if ending == ".png":
-        return ending
     if ending and ending not in _NO_FILES:
         import OpenImageIO as oiio  # noqa: N813
 
