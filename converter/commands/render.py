@@ -65,9 +65,9 @@ def _add_adaptive_options(parser: Parser) -> None:
         "--adaptive",
         type=not_negative,
         metavar="LIMIT",
-        help="draw pixels with a pass of --samples that are unlike a neighbour, in what their rays meet or by more than "
-        "LIMIT of 255 levels, and the others with one ray; in sampled scenes, with passes until errors are below LIMIT; "
-        f"--samples is {ADAPTIVE_SAMPLES} then, of which a pass has {math.isqrt(ADAPTIVE_SAMPLES)}",
+        help="draw a pass of --samples of pixels that are unlike a neighbour, in what their rays meet or by more than "
+        "LIMIT of 255 levels, and one ray of others; in sampled scenes, passes until errors are below LIMIT; with no "
+        f"--samples, a pass has {math.isqrt(ADAPTIVE_SAMPLES)} rays and there are as many",
     )
     group.add_argument(
         "--adaptive-map",

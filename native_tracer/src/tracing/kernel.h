@@ -47,8 +47,8 @@ class Kernel {
     virtual bool sign_tile(const Tile& tile, float* picture, std::uint32_t* signatures, double least_weight,
                            RayCounts& counts, const std::atomic<bool>& stop) const = 0;
 
-    // The same as trace_tile with some of the samples only: their sums are added to those before, and the picture has the mean of all
-    // so far. With a mask, sums and colours of other pixels stay what they are.
+    // The same as trace_tile with some of the samples only: their sums are added to those before, and the picture has
+    // the mean of all so far. With a mask, sums and colours of other pixels stay what they are.
     virtual bool add_samples(const Tile& tile, const Places& places, const unsigned char* mask, const SampleSums& sums,
                              float* picture, RayCounts& counts, const std::atomic<bool>& stop) const = 0;
 

@@ -26,8 +26,8 @@ class Signer {
  public:
     static constexpr bool observes = true;
 
-    // Adds to signatures[pixel] what rays decide that weigh at least so much: what the others send back changes a colour
-    // little, whatever it is.
+    // Adds to signatures[pixel] what rays decide that weigh at least so much: what the others send back changes a
+    // colour little, whatever it is.
     Signer(std::uint32_t* signatures, double least_weight)
         : signatures_(signatures), least_weight_(static_cast<Real>(least_weight)) {}
 
