@@ -23,18 +23,20 @@ from pathlib import Path
 import numpy as np
 from tables import print_table
 
+import native_tracer
 from converter.commands.adapting import Adapting
 from converter.compare.classes import CLASSES, Class, explain, less_exact
 from converter.compare.metrics import compare_pixels
 from converter.renderers.base import Renderer, Rendering
 from converter.renderers.methods import METHODS
 from converter.renderers.mitsuba import MitsubaRenderer
-from converter.renderers.native import NativeRenderer
+from converter.renderers.native import NativeRenderer, build_scene
 from converter.renderers.povray import PovrayRenderer
+from converter.scene.geometry import simplified
 from converter.scene.model import Scene
 from converter.scene.needs import scene_needs
 from converter.scene.parser import load_scene, parse_scene
-from converter.scene.settings import Settings
+from converter.scene.settings import ADAPTIVE_SAMPLES, Settings
 from native_tracer import quantize
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "scenes"))
@@ -50,8 +52,12 @@ RANDOM_SCENES = 200
 MOST_EXPLAINED = 100
 """Pixels of a picture whose rays are compared: of glass csgs some take a second."""
 POVRAY = "POV-Ray 3.7, its trace time"
-LIMITS = (4, 8, 32)
+LIMITS = (4, 16, 32)
 """Of adaptive sampling, in levels of 255."""
+MEASURED = 1 / 16
+"""The share of pixels in which its errors are measured: 256 samples take long."""
+BLOCK = 16
+"""They are squares of so many pixels a side: few rays would share a group elsewhere."""
 
 
 def main() -> None:
@@ -246,28 +252,47 @@ def _disagreeing(scene: Scene, settings: Settings, one: Renderer, other: Rendere
 
 
 def adaptive() -> None:
-    """The gallery's scenes in which nothing is random: errors of adaptive and of uniform pictures, and rays."""
-    print("800 x 600, native: RMS error in levels of 255 against 256 samples a pixel: one sample, 16, and 16 where")
-    print("--adaptive LIMIT wants them, with the rays a pixel from the eye")
+    """The gallery's scenes, in which nothing is random: errors of adaptive and of uniform pictures, and rays."""
+    one_in = round(1 / MEASURED)
+    print(f"800 x 600, native: RMS error in levels of 255 against 256 samples a pixel, in one of {one_in} pixels: one")
+    print("sample, 16, and where --adaptive LIMIT wants them 12, with the rays a pixel from the eye")
     print(f"{'':<18}{'1':>8}{'16':>8}" + "".join(f"{f'LIMIT {limit}':>10}{'rays':>7}" for limit in LIMITS))
     rows = []
     for file in sorted((ROOT / "scenes").glob("*.in")):
-        scene = load_scene(file)
-        if not scene_needs(scene, Settings()).sampled:
-            rows.append(_adaptive_errors(scene))
-            print(f"{file.name:<18}{_adaptive_told(rows[-1])}", flush=True)
+        rows.append(_adaptive_errors(load_scene(file)))
+        print(f"{file.name:<18}{_adaptive_told(rows[-1])}", flush=True)
     print(f"{'mean':<18}{_adaptive_told(np.mean(rows, axis=0))}")
 
 
 def _adaptive_errors(scene: Scene) -> list[float]:
-    native = NativeRenderer()
-    truth, one, many = (native.render(scene, Settings(samples=n)) for n in (256, 1, 16))
-    result = [_rms_levels(picture, truth) for picture in (one, many)]
+    measured = _some_blocks(600, 800)
+    truth, *uniform = (_seen(_some_pixels(scene, measured, count)[measured]) for count in (256, 1, 16))
+    result = [_rms_levels(picture, truth) for picture in uniform]
     for limit in LIMITS:
-        chosen = Adapting(limit, 16)
-        picture = native.render_adaptively(scene, Settings(samples=16), chosen)
+        chosen = Adapting(limit, ADAPTIVE_SAMPLES)
+        rendering = NativeRenderer().render_adaptively(scene, Settings(samples=ADAPTIVE_SAMPLES), chosen)
+        picture = _seen(np.asarray(rendering.pixels)[measured])
         result += [_rms_levels(picture, truth), chosen.statistics()["rays_a_pixel"]]
     return result
+
+
+def _some_blocks(height: int, width: int) -> np.ndarray:
+    """A mask of the squares in which errors are measured, the same each time."""
+    chosen = np.random.default_rng(0).random((-(-height // BLOCK), -(-width // BLOCK))) < MEASURED
+    return chosen.repeat(BLOCK, axis=0).repeat(BLOCK, axis=1)[:height, :width]
+
+
+def _some_pixels(scene: Scene, mask: np.ndarray, samples: int) -> np.ndarray:
+    """A picture in which some pixels are drawn."""
+    height, width = mask.shape
+    settings = Settings(width, height, samples=samples)
+    scene = simplified(scene)
+    needs = scene_needs(scene, settings)
+    image, sums = native_tracer.Image(width, height), native_tracer.PassSums(width, height)
+    options = {"samples": samples, "cutoff": settings.cutoff, "max_depth": needs.max_depth}
+    cells = [list(range(samples))]
+    native_tracer.render(build_scene(scene, needs), image, passes=cells, sums=sums, mask=mask.view(np.uint8), **options)
+    return np.asarray(image.pixels)
 
 
 def _adaptive_told(row: Sequence[float]) -> str:
@@ -276,10 +301,13 @@ def _adaptive_told(row: Sequence[float]) -> str:
     return f"{one:>8.2f}{many:>8.2f}" + "".join(f"{error:>10.2f}{rays:>7.2f}" for error, rays in pairs)
 
 
-def _rms_levels(picture: Rendering, truth: Rendering) -> float:
-    """Root of the mean square of differences, in levels of 255, of what is seen of two pictures."""
-    seen = [np.clip(np.asarray(each.pixels, np.float64), 0, 1) for each in (picture, truth)]
-    return 255 * math.sqrt(np.mean((seen[0] - seen[1]) ** 2))
+def _seen(pixels: np.ndarray) -> np.ndarray:
+    return np.clip(pixels.astype(np.float64), 0, 1)
+
+
+def _rms_levels(picture: np.ndarray, truth: np.ndarray) -> float:
+    """Root of the mean square of differences, in levels of 255."""
+    return 255 * math.sqrt(np.mean((picture - truth) ** 2))
 
 
 def _render_seconds(render: Callable[[], Rendering]) -> float:

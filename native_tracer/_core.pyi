@@ -151,6 +151,7 @@ def render(
     sums: PassSums | None = None,
     mask: Buffer | None = None,
     signatures: Buffer | None = None,
+    least_weight: float = 0.0,
 ) -> None:
     """Draw `scene` into `image`.
 
@@ -160,8 +161,8 @@ def render(
     rendering, and what is finished stays in the image. `instructions` forces an instruction set, "" takes the best.
     With `sums`, of the image's size, it is drawn in `passes`, which name each sample once at most, see
     `native_tracer.passes`: those that are in the sums are not drawn again, and those that become whole are added.
-    With a `mask` of bytes, height x width, only the pixels are drawn that are not 0 there. `signatures`, of height x
-    width uint32, get a word each for what is decided along the pixel's rays.
+    With a `mask` of bytes, too, height x width, only the pixels are drawn that are not 0 there. `signatures`, of height
+    x width uint32, get a word each for what is decided along the pixel's rays that weigh at least `least_weight`.
     """
 
 def trace_pixel(

@@ -507,10 +507,12 @@ SCENES: dict[str, Callable[[], SampledScene]] = {
 
 # ---- Writing and drawing -------------------------------------------------------------------------------------------
 
-PICTURE, SAMPLES = (240, 180), 144
+PICTURE, SAMPLES = (640, 480), 64
 """Size of a picture in pixels, and its rays a pixel."""
-TILE, COLUMNS, GAP = (272, 204), 3, 4
-"""Size of a picture on the sheet, how many stand side by side, and the white between them, in pixels."""
+TILE, TILE_SAMPLES = (272, 204), 144
+"""The same of those on the sheet."""
+COLUMNS, GAP = 3, 4
+"""How many stand side by side, and the white between them, in pixels."""
 NOISE = 4.0
 """Of 255 levels."""
 
@@ -560,7 +562,7 @@ def draw_pictures(names: Sequence[str]) -> None:
     for name in names or SCENES:
         (FOLDER / "pictures" / f"{name}.png").write_bytes(palette_png(dithered(drawn(name, *PICTURE, SAMPLES))))
     if not names:
-        tiles = [drawn(name, *TILE, SAMPLES) for name in SCENES]
+        tiles = [drawn(name, *TILE, TILE_SAMPLES) for name in SCENES]
         (FOLDER / "pictures" / "sheet.png").write_bytes(palette_png(dithered(sheet(tiles))))
 
 

@@ -106,7 +106,7 @@ def test_what_no_colour_tells(mi, name):
     """Edges are found where both sides have the same colour; each renderer finds the same."""
     found = {}
     for renderer in (NativeRenderer(), NativeRenderer("float"), MitsubaRenderer(VARIANT)):
-        _, mask, signatures = drawn(renderer, PLAIN[name], limit=255)
+        _, mask, signatures = drawn(renderer, PLAIN[name], limit=100)
         found[str(renderer)] = mask, signatures
     (mask, signatures), (single, _), (other, words) = found.values()
     assert np.array_equal(mask, other)
@@ -114,6 +114,27 @@ def test_what_no_colour_tells(mi, name):
     assert np.mean(mask != single) < 0.02
     assert mask.any() == (name != "nothing")
     assert not mask.all()
+
+
+def test_what_weighs_less_than_the_limit_is_not_signed(mi):
+    """What a mirror shows of weight 1/2, and the shadow on a mirror's floor of weight 1/2 * 1/2."""
+    half = replace(FLAT, ka=0.5, kr=0.5)
+    dim = Finish(ka=0.5, kd=0.5, ks=0, alpha=1, kr=0, kt=0, ior=1)
+    ceiling = Polyhedron(((0, 0, -1, 30),))
+    shown = PLAIN["what a mirror shows"]
+    light = Light((0, 0, 10), (1e-9, 0, 0), (1, 0, 0))
+    shadowed = scene_of(
+        Object(0, 0, FLOOR),
+        Object(0, 1, ceiling),
+        Object(0, 1, Sphere((0, 0, 20), 3)),
+        finishes=(half, dim),
+        lights=(light,),
+    )
+    for scene, least, most in ((shown, 0.499, 0.501), (shadowed, 0.249, 0.251)):
+        for renderer in (NativeRenderer(), MitsubaRenderer(VARIANT)):
+            words = [drawn(renderer, scene, limit=255 * share)[2] for share in (0, least, most, 1)]
+            assert np.array_equal(words[0], words[1])
+            assert not np.array_equal(words[1], words[2])
 
 
 @pytest.mark.parametrize("name", ["checker", "figure1", "whitted", "solids", "quadrics"])
@@ -155,6 +176,23 @@ def test_refined_pixels_have_all_samples_and_others_one(renderer, small_scene, p
     picture, mask, _ = drawn(renderer, small_scene, settings=settings)
     assert 0.05 < mask.mean() < 0.95
     assert np.array_equal(picture, np.where(mask[..., None], many, one))
+
+
+def test_of_many_samples_refined_pixels_have_a_pass(renderer, small_scene):
+    settings = replace(SETTINGS, samples=144)
+
+    def stop(share):
+        if share >= 1 / 12:
+            raise KeyboardInterrupt
+
+    with pytest.raises(Interrupted) as caught:
+        NativeRenderer().render(small_scene, settings, stop)
+    assert caught.value.partial.passes.done == 1
+    first_pass = np.asarray(caught.value.partial.passes.colors) / 12
+    one = np.asarray(NativeRenderer().render(small_scene, replace(settings, samples=1)).pixels)
+    picture, mask, _ = drawn(renderer, small_scene, settings=settings)
+    assert 0.05 < mask.mean() < 0.95
+    assert picture == pytest.approx(np.where(mask[..., None], first_pass, one), abs=1e-6)
 
 
 def test_nothing_to_refine(renderer):

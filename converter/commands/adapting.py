@@ -6,25 +6,36 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from converter.commands.exits import UsageError
-from converter.scene.settings import SAMPLES, Settings
+from converter.scene.settings import ADAPTIVE_SAMPLES, Settings
 
 if TYPE_CHECKING:
     from converter.commands.method_options import Chosen
 
 
 class Adapting:
-    """A `Refinement` of one picture, which keeps how many samples each pixel has got."""
+    """A `Refinement` of one picture, which keeps how many samples each pixel has got.
+
+    What a ray changes in a colour that weighs less than the limit is below the limit, too, or nearly.
+
+    Args:
+        limit: in levels of 255.
+        samples: rays a pixel, at most.
+
+    """
 
     def __init__(self, limit: float, samples: int) -> None:
+        self.least_weight = min(limit / 255, 1.0)
         self._limit = limit
         self._most = samples
         self._spread: Any = None
         self._samples: Any = None
 
     def unlike(self, signatures: Any, colors: Any) -> Any:
-        """The pixels that need all samples, as `Refinement` has it."""
+        """The pixels that need a pass of samples, as `Refinement` has it."""
         from converter.renderers.adaptive import unlike_neighbors
+        from native_tracer.passes import passes
 
+        self._most = len(passes(self._most)[0])
         result = unlike_neighbors(signatures, colors, self._limit)
         self._samples = 1 + self._most * result.astype("uint32")
         return result
@@ -39,7 +50,7 @@ class Adapting:
         return result
 
     def statistics(self) -> dict[str, Any]:
-        """How many pixels got all samples, and how many rays from the eye a pixel has in the mean."""
+        """How many pixels got as many samples as any may, and how many rays from the eye a pixel has in the mean."""
         refined = self._samples >= self._most
         return {
             "refined_pixels": int(refined.sum()),
@@ -78,7 +89,7 @@ def adapting(arguments: argparse.Namespace, method: "Chosen") -> tuple[Adapting 
         raise UsageError(f"--adaptive: not with {method.name}: {reason}")
     if arguments.resume:
         raise UsageError("--adaptive draws in no passes that --resume could go on from")
-    samples = method.settings.samples or SAMPLES
+    samples = method.settings.samples or ADAPTIVE_SAMPLES
     if samples == 1:
         raise UsageError("--adaptive: with --samples 1 there is nothing to add")
     return Adapting(arguments.adaptive, samples), replace(method.settings, samples=samples)

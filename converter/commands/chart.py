@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from converter.renderers.methods import Method
     from converter.scene.model import Scene
     from converter.scene.settings import Settings
+    from converter.studies.antialiasing import AntialiasingStudy
     from converter.studies.convergence import ConvergenceStudy
     from converter.studies.measure import SceneStudy
 
@@ -30,7 +31,8 @@ def parser() -> Parser:
         "double, with no cut-off and 64 bounces, or as near to that as can be afforded.\n\n"
         "Of scenes that are sampled it draws how the error falls with the number of samples, up to 1024 or --samples,\n"
         "and with the time they take: a curve a method, with how fast it falls. Errors are against the native tracer\n"
-        "with more samples of other seeds.",
+        "with more samples of other seeds.\n\n"
+        "With --adaptive it draws what anti-aliasing costs.",
         "whitted chart scenes/figure1.in -o chart.svg --csv chart.csv",
     )
     result.add_argument("scenes", type=Path, nargs="+", metavar="SCENE", help="scene files, a column of the chart each")
@@ -51,6 +53,12 @@ def parser() -> Parser:
         type=_methods,
         metavar="NAME,...|all",
         help="the methods (all; for sampled scenes native, native:points=independent, mitsuba)",
+    )
+    group.add_argument(
+        "--adaptive",
+        action="store_true",
+        help="what anti-aliasing costs: error against rays and time of as many rays in every pixel, of --adaptive with "
+        "several limits, and, --vs povray, of its methods 1 and 2",
     )
     group.add_argument("--vs", choices=("povray",), help="with POV-Ray as well, which has to be installed")
     group.add_argument(
@@ -106,7 +114,7 @@ def run(arguments: argparse.Namespace) -> int:
             check_target(file, arguments.scenes)
     check_json(arguments.json, arguments.scenes)
     scenes = _read(arguments, settings)
-    kind = _sampled() if _are_sampled(scenes, settings) else _plain()
+    kind = _kind(arguments.adaptive, _are_sampled(scenes, settings))
     width, height = arguments.size or kind.size
     settings = replace(settings, width=width, height=height)
     studies = _measure(arguments, scenes, settings, kind)
@@ -133,6 +141,31 @@ class _Kind(NamedTuple):
     to_json: Callable[[list[Any]], dict[str, Any]]
     show: Callable[[Any], None]
     left_out: Callable[[Any], list[str]]
+
+
+def _kind(adaptive: bool, sampled: bool) -> _Kind:
+    if not adaptive:
+        return _sampled() if sampled else _plain()
+    if sampled:
+        raise UsageError("--adaptive: of scenes that are not sampled")
+    return _antialiasing()
+
+
+def _antialiasing() -> _Kind:
+    from converter.studies import antialiasing_report as report
+    from converter.studies.antialiasing import default_methods, measure_antialiasing
+    from converter.studies.antialiasing_figure import draw_antialiasing
+
+    return _Kind(
+        (400, 300),
+        default_methods(),
+        measure_antialiasing,
+        draw_antialiasing,
+        report.to_csv,
+        report.to_json,
+        _print_antialiasing,
+        report.left_out_methods,
+    )
 
 
 def _plain() -> _Kind:
@@ -255,3 +288,12 @@ def _print_convergence(study: "ConvergenceStudy") -> None:
     title = f"{study.file}, {study.settings.width} x {study.settings.height} pixels"
     print_table(report.rows(study), report.HEADER, report.ALIGN, title)
     print("\n".join(["", f"against {report.about_truth(study)}", report.LEGEND, *report.left_out_methods(study), ""]))
+
+
+def _print_antialiasing(study: "AntialiasingStudy") -> None:
+    from converter.commands.tables import print_table
+    from converter.studies import antialiasing_report as report
+
+    title = f"{study.file}, {study.settings.width} x {study.settings.height} pixels"
+    print_table(report.rows(study), report.HEADER, report.ALIGN, title)
+    print("\n".join(["", report.LEGEND, *report.left_out_methods(study), ""]))

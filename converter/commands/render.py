@@ -1,6 +1,7 @@
 """`whitted render`: a scene into an image file."""
 
 import argparse
+import math
 import sys
 from pathlib import Path
 
@@ -9,7 +10,7 @@ from converter.commands.method_options import add_method_options, check_variant,
 from converter.commands.options import Parser, add_reading_options, add_running_options, add_size, not_negative
 from converter.commands.results import Result, TextResult
 from converter.descriptors import STANDARD_OUTPUT
-from converter.scene.settings import SAMPLES
+from converter.scene.settings import ADAPTIVE_SAMPLES
 
 
 def parser() -> Parser:
@@ -64,8 +65,9 @@ def _add_adaptive_options(parser: Parser) -> None:
         "--adaptive",
         type=not_negative,
         metavar="LIMIT",
-        help=f"draw pixels with up to --samples rays ({SAMPLES}) that are unlike a neighbour, in what their rays meet "
-        "or by more than LIMIT of 255 levels, or whose error is above LIMIT in sampled scenes, and the others with few",
+        help="draw a pass of --samples of pixels that are unlike a neighbour, in what their rays meet or by more than "
+        "LIMIT of 255 levels, and one ray of others; in sampled scenes, passes until errors are below LIMIT; with no "
+        f"--samples, a pass has {math.isqrt(ADAPTIVE_SAMPLES)} rays and there are as many",
     )
     group.add_argument(
         "--adaptive-map",

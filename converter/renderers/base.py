@@ -127,13 +127,21 @@ def draws_in_passes(renderer: Renderer) -> TypeGuard[PassRenderer]:
 
 
 class Refinement(Protocol):
-    """Says which pixels of one picture need more samples. Arrays are NumPy's, and masks (height, width) bool."""
+    """Says which pixels of one picture need more samples. Arrays are NumPy's, and masks (height, width) bool.
+
+    Attributes:
+        least_weight: of the rays whose decisions are in signatures.
+
+    """
+
+    least_weight: float
 
     def unlike(self, signatures: Any, colors: Any) -> Any:
-        """In a scene in which nothing is random, the pixels that need all samples, when each has one.
+        """In a scene in which nothing is random, the pixels that need a pass of samples, when each has one sample.
 
         Args:
-            signatures: (height, width) uint32, a word for what is decided along the rays of each pixel.
+            signatures: (height, width) uint32, a word for what is decided along the rays of each pixel that weigh at
+                least `least_weight`.
             colors: (height, width, 3) float32, linear RGB.
 
         """

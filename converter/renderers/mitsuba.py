@@ -168,16 +168,17 @@ class MitsubaRenderer:
                             break
                 else:
                     signatures = np.zeros((height, width), dtype=np.uint32)
-                    first = share_of_first(samples)
-                    bands = pictures.signed_bands(integrator, mitsuba_scene, sensor, part_of(progress, 0, first))
+                    cells = passes(samples)[0]
+                    first = share_of_first(len(cells))
+                    told = part_of(progress, 0, first)
+                    bands = pictures.signed_bands(integrator, mitsuba_scene, sensor, refinement.least_weight, told)
                     for row, color, words in bands:
                         rows = np.moveaxis(np.asarray(color), 0, -1).reshape(-1, width, 3)
                         pixels[row : row + len(rows)] = rows
                         signatures[row : row + len(rows)] = np.asarray(words).reshape(-1, width)
                     too_deep.append(integrator.pixels_too_deep)
                     mask = refinement.unlike(signatures, pixels)
-                    cells = [cell for cells in passes(samples) for cell in cells]
-                    add(sums, mask, cells, samples, part_of(progress, first, 1))
+                    add(sums, mask, cells, len(cells), part_of(progress, first, 1))
         except KeyboardInterrupt:
             raise Interrupted(rendering()) from None
         except RuntimeError as error:

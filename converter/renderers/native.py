@@ -135,11 +135,14 @@ class NativeRenderer:
                         break
             else:
                 signatures = np.zeros((settings.height, settings.width), np.uint32)
-                first = share_of_first(needs.samples)
-                draw(samples=1, signatures=signatures, progress=part_of(progress, 0, first))
+                cells = _passes(needs.samples)[0]
+                first = share_of_first(len(cells))
+                signing = {"signatures": signatures, "least_weight": refinement.least_weight}
+                draw(samples=1, progress=part_of(progress, 0, first), **signing)
                 statistics.append(image.statistics)
                 mask = refinement.unlike(signatures, np.asarray(image.pixels))
-                draw(mask=mask.view(np.uint8), progress=part_of(progress, first, 1))
+                sums = tracer.PassSums(settings.width, settings.height)
+                draw(passes=[cells], sums=sums, mask=mask.view(np.uint8), progress=part_of(progress, first, 1))
         except KeyboardInterrupt:
             raise Interrupted(rendering()) from None
         return rendering()

@@ -8,6 +8,7 @@ import tempfile
 import time
 from dataclasses import dataclass, replace
 from pathlib import Path
+from typing import Literal
 
 from converter.renderers.base import Interrupted, Progress, RendererUnavailable, Rendering
 from converter.scene.model import Color, Scene
@@ -17,6 +18,7 @@ PROGRAM = "povray"
 BRIGHTEST = 8
 """A power of two. POV-Ray's files of 16 bits end at 1: it draws in light that is dimmed by this, so that they reach
 this far, in steps of an 8000th."""
+_RAYS = re.compile(r"^Pixels: *(\d+) *Samples: *(\d+)", re.MULTILINE)
 _TRACE_TIME = re.compile(r"Trace Time:.*?\(([\d.]+) seconds\)")
 _COMPLAINT = re.compile(r"((?:Parse|Fatal|Possible Parse) Error|Problem):?\s", re.IGNORECASE)
 
@@ -25,19 +27,41 @@ class PovrayError(RuntimeError):
     """POV-Ray gave up; the message says what it complained of."""
 
 
+@dataclass(frozen=True, slots=True)
+class Supersampling:
+    """POV-Ray's own anti-aliasing, of pixels that are unlike their neighbours.
+
+    Attributes:
+        method: 1 draws a grid of rays then, 2 divides squares whose corners are unlike.
+        threshold: sum of the channels' differences, where white is 1.
+        depth: of the grid, or how often squares are halved.
+
+    """
+
+    method: Literal[1, 2]
+    threshold: float
+    depth: int = 3
+
+
 @dataclass(frozen=True)
 class PovrayRenderer:
     """Draws with the program `povray`, version 3.7, what `whitted convert SCENE FILE.pov` writes.
 
     Colours come in steps of an 8000th, and those beyond 0..8 are clamped before samples are averaged.
+
+    Attributes:
+        supersampling: in addition to what settings ask for.
+
     """
+
+    supersampling: Supersampling | None = None
 
     def render(self, scene: Scene, settings: Settings, progress: Progress | None = None) -> Rendering:
         """Draw `scene`.
 
         `seconds["render"]` is POV-Ray's own trace time, `"start"` the rest of its process, `"build"` the conversion.
-        `statistics["clamped"]` says whether a colour was clamped, `["omissions"]` what is drawn otherwise than the
-        scene means it.
+        `statistics["primary"]` are the rays from the eye; `["clamped"]` says whether a colour was clamped,
+        `["omissions"]` what is drawn otherwise than the scene means it.
 
         Raises:
             RendererUnavailable: POV-Ray is not installed.
@@ -67,9 +91,11 @@ class PovrayRenderer:
             exported, _ = export_povray(*_dimmed(scene, settings), Path(folder, "scene.pov"))
             seconds["build"] = time.perf_counter() - started
             options = [*draw_options(settings), f"+WT{settings.threads or available_cores()}"]
+            if self.supersampling is not None:
+                options += _options(self.supersampling)
             began = time.perf_counter()
             try:
-                seconds["render"] = _run([program, "+Iscene.pov", "+Opicture.ppm", *options], folder)
+                seconds["render"], rays = _run([program, "+Iscene.pov", "+Opicture.ppm", *options], folder)
             except KeyboardInterrupt:
                 raise Interrupted(Rendering(pixels, settings.width, settings.height, seconds)) from None
             seconds["start"] = time.perf_counter() - began - seconds["render"]
@@ -78,7 +104,7 @@ class PovrayRenderer:
         pixels[:] = BRIGHTEST * cells.mean(axis=(1, 3), dtype=np.float64)
         if progress is not None:
             progress(1.0)
-        statistics = {"clamped": bool((fine >= 1).any()), "omissions": exported.omissions}
+        statistics = {"primary": rays, "clamped": bool((fine >= 1).any()), "omissions": exported.omissions}
         return Rendering(pixels, settings.width, settings.height, seconds, statistics)
 
 
@@ -94,8 +120,14 @@ def _dimmed(scene: Scene, settings: Settings) -> tuple[Scene, Settings]:
     return replace(scene, ambient=dim(scene.ambient), lights=lights), replace(settings, background=background)
 
 
-def _run(command: list[str], folder: str) -> float:
-    """Run POV-Ray in `folder`, where alone it may read and write, and return its trace time in seconds."""
+def _options(how: Supersampling) -> list[str]:
+    """No jitter, and differences of linear colours, as dimmed as they are."""
+    threshold = f"+A{how.threshold / BRIGHTEST:.9f}"
+    return [threshold, f"+AM{how.method}", f"+R{how.depth}", "-J", "Antialias_Gamma=1"]
+
+
+def _run(command: list[str], folder: str) -> tuple[float, int]:
+    """Run POV-Ray in `folder`, where alone it may read and write; its trace time in seconds, and rays from the eye."""
     # In a session of its own, so that Ctrl-C reaches it through us alone.
     process = subprocess.Popen(
         command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
@@ -107,10 +139,10 @@ def _run(command: list[str], folder: str) -> float:
         process.kill()
         process.wait()
         raise
-    found = _TRACE_TIME.search(told)
-    if process.returncode != 0 or found is None:
+    found, rays = _TRACE_TIME.search(told), _RAYS.search(told)
+    if process.returncode != 0 or found is None or rays is None:
         raise PovrayError(f"POV-Ray failed: {_complaint(told) or f'exit status {process.returncode}'}")
-    return float(found[1])
+    return float(found[1]), int(rays[1]) + int(rays[2])
 
 
 def _complaint(told: str) -> str:

@@ -13,6 +13,8 @@ IorReading = Literal["auto", "ratio", "index"]
 MOST_THREADS = 1024
 SAMPLES = 16
 """Rays per pixel of a scene that is sampled, where nobody asks for another number."""
+ADAPTIVE_SAMPLES = 144
+"""The same where some pixels get more rays than others; a pass has 12 of them."""
 
 
 @dataclass(frozen=True, slots=True)

@@ -92,9 +92,10 @@ def bands_by_passes(
 
 
 def signed_bands(
-    integrator: Any, scene: Any, sensor: Any, progress: Progress | None = None
+    integrator: Any, scene: Any, sensor: Any, least_weight: float, progress: Progress | None = None
 ) -> Iterator[tuple[int, Any, Any]]:
-    """Draw a picture of one sample a pixel in bands of rows, with signatures, see :mod:`.signature`.
+    """Draw a picture of one sample a pixel in bands of rows, with signatures of rays that weigh at least
+    `least_weight`, see :mod:`.signature`.
 
     Yields:
         The first row of a band within the film's crop window, and its pixels' colours (Color3f) and signatures
@@ -102,7 +103,7 @@ def signed_bands(
 
     """
     width, height = sensor.film().crop_size()
-    with integrator.prepared(scene, sensor, signing=True), dr.suspend_grad():
+    with integrator.prepared(scene, sensor, least_weight), dr.suspend_grad():
         pace = Pace(integrator.branching, integrator.max_depth[0])
         integrator.pixels_too_deep = 0
         offset = column(mi.Float64, sample_offsets(1))

@@ -190,15 +190,15 @@ class Whitted(mi.SamplingIntegrator):
     # ------------------------------------------------------------------ preparation
 
     @contextmanager
-    def prepared(self, scene, sensor=None, signing=False):
+    def prepared(self, scene, sensor=None, least_weight=None):
         """Lay out what the kernel reads: surfaces, finishes, pigments, lights, and what the eye of a `pinhole` lies on;
-        the methods below need it. With `signing`, pixels get signatures.
+        the methods below need it. With a `least_weight`, pixels get signatures of rays that weigh at least so much.
 
         Let go of at the end: it may hold the scene, which holds this integrator, and such circles are never freed.
         """
         primitives = Primitives(self.types, self.surfaces)
         self.first_primitives = primitives.first
-        self._pieces = column(mi.UInt32, primitives.pieces) if signing else None
+        self._pieces = column(mi.UInt32, primitives.pieces) if least_weight is not None else None
         # These, too, are read anew each time: they are what mitsuba.traverse lets a user change.
         self._materials = Materials(self.types, [self._bsdfs.by_name[surface.material] for surface in self.surfaces])
         self._lights = Lights(self.types, scene.emitters())
@@ -206,9 +206,10 @@ class Whitted(mi.SamplingIntegrator):
         self._soft_shadows = self.shadows and bool(self._lights.radii.any())
         self._spreads = self._materials.spread and (self.reflection or self.refraction)
         self._has_lens = getattr(sensor, "has_lens", False)
-        self.signing = signing
+        self.signing = least_weight is not None
+        self._least_weight = dr.opaque(self.types.Float, least_weight) if self.signing else None
         # Where signatures are made, rays have paths.
-        self.sampled = self.moves or self._soft_shadows or self._spreads or self._has_lens or signing
+        self.sampled = self.moves or self._soft_shadows or self._spreads or self._has_lens or self.signing
         contacts = Contacts(self.surfaces)
         self._light_contacts = LightContacts(self.types, contacts, self._lights.positions, self._lights.radii)
         on_something = hasattr(sensor, "eye") and not self._has_lens
@@ -346,7 +347,9 @@ class Whitted(mi.SamplingIntegrator):
             finish, color = self.material(ray, hit)
             local, shadows = self.local_radiance(ray, hit, finish, color, sample, path)
             if dr.hint(self.signing, mode="scalar"):
-                signature += dr.select(hit.valid, self._hit_word(ray, hit, path) + shadows, 0)
+                signature += dr.select(hit.valid & (weight >= self._least_weight), self._hit_word(ray, hit, path), 0)
+                lit_weight = weight * (finish.kd + finish.ks)
+                signature += dr.select(hit.valid & (lit_weight >= self._least_weight), shadows, 0)
             radiance += weight * dr.select(hit.valid, local, self.types.Color3(self.background))
 
             depth += 1

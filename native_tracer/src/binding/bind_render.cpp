@@ -97,7 +97,7 @@ void render_image(const SceneDescription& scene, Image& image, int samples, std:
                   bool corner, bool blinn, double cutoff, int max_depth, const std::string& precision,
                   const std::string& search, int threads, nb::object progress, const std::string& instructions,
                   const std::vector<Places>& passes, PassSums* sums, std::optional<Mask> mask,
-                  std::optional<Signatures> signatures) {
+                  std::optional<Signatures> signatures, double least_weight) {
     const RenderSettings settings = settings_of(image.width(), image.height(), samples, seed, independent, corner,
                                                 blinn, cutoff, max_depth, precision, search);
     if (!progress.is_none() && !PyCallable_Check(progress.ptr())) {
@@ -113,6 +113,9 @@ void render_image(const SceneDescription& scene, Image& image, int samples, std:
     if ((mask && !fits(*mask)) || (signatures && !fits(*signatures))) {
         throw std::invalid_argument("a mask and signatures have the image's height and width");
     }
+    if (mask && sums == nullptr) {
+        throw std::invalid_argument("a mask goes with sums");
+    }
     const auto watch = [&](double done) {
         const nb::gil_scoped_acquire lock;
         if (PyErr_CheckSignals() != 0) {
@@ -126,10 +129,8 @@ void render_image(const SceneDescription& scene, Image& image, int samples, std:
     const std::unique_ptr<Kernel> kernel = make_kernel(scene, settings, instructions);
     if (sums != nullptr) {
         render(*kernel, image, *sums, passes, mask ? mask->data() : nullptr, threads, watch);
-    } else if (mask) {
-        render_masked(*kernel, image, mask->data(), threads, watch);
     } else if (signatures) {
-        render_signed(*kernel, image, signatures->data(), threads, watch);
+        render_signed(*kernel, image, signatures->data(), least_weight, threads, watch);
     } else {
         render(*kernel, image, threads, watch);
     }
@@ -357,14 +358,14 @@ void bind_render(nb::module_& module) {
         "independent"_a = false, "corner"_a = true, "blinn"_a = false, "cutoff"_a, "max_depth"_a,
         "precision"_a = "double", "search"_a = "auto", "threads"_a = 0, "progress"_a = nb::none(),
         "instructions"_a = "", "passes"_a = nb::list(), "sums"_a = nb::none(), "mask"_a = nb::none(),
-        "signatures"_a = nb::none(),
+        "signatures"_a = nb::none(), "least_weight"_a = 0.0,
         "Draw `scene` into `image`. `progress` is called about 20 times a second with the finished share; what\n"
         "it raises, and Ctrl-C, stop the rendering, and what is finished stays in the image.\n"
         "With `sums`, of the image's size, it is drawn in `passes`, which name each sample once at most; passes that "
         "are\n"
-        "in the sums are not drawn again, and those that become whole are added. With a `mask` of bytes, height x\n"
-        "width, only the pixels are drawn that are not 0 there. `signatures`, of uint32, get a word each for what is\n"
-        "decided along the pixel's rays.");
+        "in the sums are not drawn again, and those that become whole are added. With a `mask` of bytes, too, height\n"
+        "x width, only the pixels are drawn that are not 0 there. `signatures`, of uint32, get a word each for what\n"
+        "is decided along the pixel's rays that weigh at least `least_weight`.");
     module.def("trace_pixel", &trace_pixel, "scene"_a, "width"_a, "height"_a, "x"_a, "y"_a, nb::kw_only(),
                "samples"_a = 1, "seed"_a = 0, "independent"_a = false, "corner"_a = true, "blinn"_a = false, "cutoff"_a,
                "max_depth"_a, "precision"_a = "double", "search"_a = "auto",

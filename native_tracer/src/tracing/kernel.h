@@ -42,16 +42,13 @@ class Kernel {
     virtual bool trace_tile(const Tile& tile, float* picture, RayCounts& counts,
                             const std::atomic<bool>& stop) const = 0;
 
-    // The same for those pixels only where `mask`, height x width of the picture, is not 0.
-    virtual bool trace_masked(const Tile& tile, const unsigned char* mask, float* picture, RayCounts& counts,
-                              const std::atomic<bool>& stop) const = 0;
+    // The same, and the pixels' signatures, height x width of the picture, of rays that weigh at least so much; see
+    // signer.h.
+    virtual bool sign_tile(const Tile& tile, float* picture, std::uint32_t* signatures, double least_weight,
+                           RayCounts& counts, const std::atomic<bool>& stop) const = 0;
 
-    // The same as trace_tile, and the pixels' signatures, height x width of the picture; see signer.h.
-    virtual bool sign_tile(const Tile& tile, float* picture, std::uint32_t* signatures, RayCounts& counts,
-                           const std::atomic<bool>& stop) const = 0;
-
-    // The same with some of the samples only: their sums are added to those before, and the picture has the mean of all
-    // so far. With a mask, sums and colours of other pixels stay what they are.
+    // The same as trace_tile with some of the samples only: their sums are added to those before, and the picture has
+    // the mean of all so far. With a mask, sums and colours of other pixels stay what they are.
     virtual bool add_samples(const Tile& tile, const Places& places, const unsigned char* mask, const SampleSums& sums,
                              float* picture, RayCounts& counts, const std::atomic<bool>& stop) const = 0;
 

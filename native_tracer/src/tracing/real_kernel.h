@@ -39,21 +39,10 @@ class RealKernel final : public Kernel {
                             [&](const Pixel& pixel) { show(pixel, picture); });
     }
 
-    bool trace_masked(const Tile& tile, const unsigned char* mask, float* picture, RayCounts& counts,
-                      const std::atomic<bool>& stop) const override {
-        Unobserved unobserved;
-        const PrimaryRays<Real> rays(camera_, scene_.eye_contact, settings_, tile, nullptr, mask);
-        return trace_pixels(unobserved, tile, rays, counts, stop, [&](const Pixel& pixel) {
-            if (mask[pixel.index] != 0) {
-                show(pixel, picture);
-            }
-        });
-    }
-
-    bool sign_tile(const Tile& tile, float* picture, std::uint32_t* signatures, RayCounts& counts,
+    bool sign_tile(const Tile& tile, float* picture, std::uint32_t* signatures, double least_weight, RayCounts& counts,
                    const std::atomic<bool>& stop) const override {
         std::array<std::uint32_t, tile_width * tile_height> words{};
-        Signer<Real> signer(words.data());
+        Signer<Real> signer(words.data(), least_weight);
         return trace_pixels(signer, tile, all_rays(tile), counts, stop, [&](const Pixel& pixel) {
             show(pixel, picture);
             signatures[pixel.index] = words[pixel.in_tile];

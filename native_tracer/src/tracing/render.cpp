@@ -185,17 +185,10 @@ void render(const Kernel& kernel, Image& image, int threads, const std::function
     });
 }
 
-void render_masked(const Kernel& kernel, Image& image, const unsigned char* mask, int threads,
+void render_signed(const Kernel& kernel, Image& image, std::uint32_t* signatures, double least_weight, int threads,
                    const std::function<void(double)>& watch) {
     draw(kernel, image, threads, watch, [&](const Tile& tile, RayCounts& counts, const std::atomic<bool>& stop) {
-        return kernel.trace_masked(tile, mask, image.data(), counts, stop);
-    });
-}
-
-void render_signed(const Kernel& kernel, Image& image, std::uint32_t* signatures, int threads,
-                   const std::function<void(double)>& watch) {
-    draw(kernel, image, threads, watch, [&](const Tile& tile, RayCounts& counts, const std::atomic<bool>& stop) {
-        return kernel.sign_tile(tile, image.data(), signatures, counts, stop);
+        return kernel.sign_tile(tile, image.data(), signatures, least_weight, counts, stop);
     });
 }
 

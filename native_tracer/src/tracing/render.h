@@ -71,17 +71,13 @@ class PassSums {
 // tiles that are finished stay in the image. The bytes do not depend on the number of threads.
 void render(const Kernel& kernel, Image& image, int threads, const std::function<void(double)>& watch);
 
-// The same for those pixels only where `mask`, height x width, is not 0; the others stay what they are.
-void render_masked(const Kernel& kernel, Image& image, const unsigned char* mask, int threads,
-                   const std::function<void(double)>& watch);
-
-// The same as the first, and the pixels' signatures, height x width, see signer.h.
-void render_signed(const Kernel& kernel, Image& image, std::uint32_t* signatures, int threads,
+// The same, and the pixels' signatures, height x width, of rays that weigh at least so much; see signer.h.
+void render_signed(const Kernel& kernel, Image& image, std::uint32_t* signatures, double least_weight, int threads,
                    const std::function<void(double)>& watch);
 
 // The same, pass after pass over the whole picture, each with some places of every pixel. Those that are in `sums` are
 // not drawn again. The picture has the mean of what is drawn of it at every moment; if drawing is stopped, the sums
-// have the passes that are whole. With a mask, height x width, other pixels stay what they are.
+// have the passes that are whole. With a mask, height x width, pixels where it is 0 stay what they are.
 void render(const Kernel& kernel, Image& image, PassSums& sums, const std::vector<Places>& passes,
             const unsigned char* mask, int threads, const std::function<void(double)>& watch);
 

@@ -26,8 +26,10 @@ class Signer {
  public:
     static constexpr bool observes = true;
 
-    // Adds to signatures[pixel].
-    explicit Signer(std::uint32_t* signatures) : signatures_(signatures) {}
+    // Adds to signatures[pixel] what rays decide that weigh at least so much: what the others send back changes a
+    // colour little, whatever it is.
+    Signer(std::uint32_t* signatures, double least_weight)
+        : signatures_(signatures), least_weight_(static_cast<Real>(least_weight)) {}
 
     // What a ray is known by is its path, see sampler.h.
     void primary(Group<Real>& group) { group.record = static_cast<int>(primary_path); }
@@ -49,7 +51,7 @@ class Signer {
 
     void surface(const Group<Real>& group, const Scene<Real>& scene, const Hits<Real>& hits,
                  const Surface<Real>& surface) {
-        for_each(group, surface.hit, [&](int lane) {
+        for_each(group, surface.hit & (group.weight >= least_weight_), [&](int lane) {
             const int object = hits.object[lane];
             const int piece = scene.shapes.visit(scene.objects[static_cast<std::size_t>(object)].shape,
                                                  [&](const auto& shape) { return shape.piece(hits.primitive[lane]); });
@@ -62,7 +64,8 @@ class Signer {
     template <typename... Arguments>
     void light(const Group<Real>& group, std::size_t light, const Surface<Real>& surface, Mask<Real>,
                Indices<Real> blocker, const Arguments&...) {
-        for_each(group, surface.hit & (blocker >= Indices<Real>(0)),
+        const Mask<Real> matters = group.weight * (surface.kd + surface.ks) >= least_weight_;
+        for_each(group, surface.hit & matters & (blocker >= Indices<Real>(0)),
                  [&](int lane) { return combine(path_of(group, lane), ~static_cast<std::uint32_t>(light)); });
     }
 
@@ -88,6 +91,7 @@ class Signer {
     }
 
     std::uint32_t* signatures_;
+    const Lanes<Real> least_weight_;
     std::uint32_t cells_[static_cast<std::size_t>(lane_count<Real>)] = {};
 };
 
