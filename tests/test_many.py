@@ -37,9 +37,8 @@ def whitted(capsys):
         (("--rows", "20:"), (slice(20, None), slice(None))),
     ],
 )
-@pytest.mark.parametrize("method", ["native", "mitsuba-analytic"])
 @pytest.mark.parametrize("samples", [4, 25])
-def test_a_part_has_the_pixels_of_the_whole(whitted, tmp_path, options, part, method, samples):
+def test_a_part_has_the_pixels_of_the_whole(whitted, tmp_path, options, part, samples, method="native"):
     words = (40, 30, "--method", method, "--samples", samples, "-q")
     scene = SCENES / "sampled" / "billiards.in"
     assert whitted("render", scene, tmp_path / "whole.pfm", *words)[0] == 0
@@ -47,6 +46,13 @@ def test_a_part_has_the_pixels_of_the_whole(whitted, tmp_path, options, part, me
     whole = texels(tmp_path / "whole.pfm")
     assert np.array_equal(texels(tmp_path / "part.pfm"), whole[part])
     assert len(np.unique(whole[part])) > 50
+
+
+@pytest.mark.parametrize("samples", [1, 25])
+def test_a_part_by_mitsuba(whitted, tmp_path, samples):
+    part = (slice(5, 17), slice(3, 30))
+    words = (whitted, tmp_path, ("--crop", "3,5,30,17"), part, samples, "mitsuba-analytic")
+    test_a_part_has_the_pixels_of_the_whole(*words)
 
 
 @pytest.mark.parametrize(

@@ -27,6 +27,8 @@ _UNUSABLE = (
     ("converter.renderers.povray", "PovrayError"),
     ("converter.renderers.base", "EffectUnavailable"),
     ("converter.renderers.base", "ResumeError"),
+    ("converter.films.errors", "FilmError"),
+    ("converter.batch.cluster", "ClusterError"),
 )
 _UNAVAILABLE = (("converter.renderers.base", "RendererUnavailable"), ("mitsuba_plugins.backend", "BackendError"))
 """Modules and the errors in them that a user can mend; by name, so that telling one loads nothing."""

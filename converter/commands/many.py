@@ -6,16 +6,19 @@ from collections.abc import Callable, Iterator
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
+from converter.batch.manifest import Manifest, digest_of
 from converter.commands.exits import OK, UsageError, tell, told
 from converter.commands.patterns import fields_of, named
 
 if TYPE_CHECKING:
+    from converter.commands.method_options import Chosen
     from converter.commands.progress import ProgressBar
     from converter.renderers.base import Rendering
 
 FIELDS = ("name", "number")
 """Of a pattern: the scene file's name without its ending, and the scene's place among all, from 1."""
-DrawOne = Callable[[Path, Path, "ProgressBar"], "tuple[Rendering, dict[str, float]]"]
+DrawOne = Callable[[Path, Path, "ProgressBar"], "tuple[Rendering, dict[str, float]] | None"]
+"""Draws a scene into a picture; None, if that is there already."""
 
 
 class Outcome(NamedTuple):
@@ -53,6 +56,39 @@ def pictures_of(scenes: list[Path], pattern: str) -> list[Path]:
     return pictures
 
 
+class Keeper:
+    """Which pictures are there already, and drawn from what they are to be drawn from now."""
+
+    def __init__(self, arguments: argparse.Namespace, method: "Chosen") -> None:
+        self._method = method
+        self._format = arguments.format
+        self._adaptive = arguments.adaptive
+        self._manifests: dict[Path, Manifest] = {}
+        self._sources: dict[Path, str] = {}
+
+    def has(self, scene_file: Path, picture: Path) -> bool:
+        """Whether the picture of a scene is there; an error of the scene is told where it is drawn."""
+        from converter.commands.notes import load
+        from converter.renderers.partial import identity
+        from converter.scene.errors import SceneError
+
+        try:
+            found = identity(load(scene_file), self._method.settings, self._method.name)
+        except (SceneError, OSError):
+            return False
+        self._sources[picture] = digest_of(found, self._format or picture.suffix, self._adaptive)
+        return self._manifest(picture).has(picture, self._sources[picture])
+
+    def note(self, picture: Path) -> None:
+        """Remember that it is drawn, and written."""
+        self._manifest(picture).note(picture, self._sources[picture], picture.read_bytes())
+
+    def _manifest(self, picture: Path) -> Manifest:
+        if picture.parent not in self._manifests:
+            self._manifests[picture.parent] = Manifest(picture.parent)
+        return self._manifests[picture.parent]
+
+
 def draw_all(program: str, scenes: list[Path], pictures: list[Path], draw_one: DrawOne, quiet: bool) -> list[Outcome]:
     """Draw scene after scene. What keeps one from being drawn is told, and does not stop the rest."""
     from converter.commands.progress import ProgressBar
@@ -62,8 +98,12 @@ def draw_all(program: str, scenes: list[Path], pictures: list[Path], draw_one: D
         for k, (scene, picture) in enumerate(zip(scenes, pictures, strict=True)):
             progress = bar.part(picture.name, k / len(scenes), (k + 1) / len(scenes))
             try:
-                rendering, seconds = draw_one(scene, picture, progress)
-                result.append(Outcome(scene, picture, seconds, dict(rendering.statistics)))
+                drawn = draw_one(scene, picture, progress)
+                if drawn is None:
+                    result.append(Outcome(scene, picture, {}, {}, kept=True))
+                else:
+                    rendering, seconds = drawn
+                    result.append(Outcome(scene, picture, seconds, dict(rendering.statistics)))
             except Exception as error:
                 result.append(failed(program, scene, picture, error))
     return result
@@ -84,7 +124,7 @@ def print_outcomes(outcomes: list[Outcome]) -> None:
     from converter.commands.tables import print_table
 
     print_table(list(_rows(outcomes)), header=("scene", "picture", "seconds", ""), align="llrl")
-    drawn = sum(o.error is None for o in outcomes)
+    drawn = sum(o.error is None and not o.kept for o in outcomes)
     seconds = sum(sum(o.seconds.values()) for o in outcomes)
     print(f"{drawn} of {len(outcomes)} scenes drawn, {seconds:.2f} s", file=sys.stdout)
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
+from converter.commands.cluster_options import add_cluster_options, check_cluster_options, wants_cluster
 from converter.commands.exits import OK, UsageError
 from converter.commands.method_options import Chosen, add_method_options, check_variant, choose, native_instead
 from converter.commands.options import Parser, add_reading_options, add_running_options, add_size, not_negative, size
@@ -70,6 +71,7 @@ def _parser(kind: type[Parser], many: bool) -> Parser:
     add_reading_options(result)
     add_part_options(result)
     add_running_options(result)
+    add_cluster_options(result)
     add_method_options(result)
     _add_adaptive_options(result)
     group = result.add_argument_group("what is told and kept")
@@ -122,6 +124,7 @@ def _ending(text: str) -> str:
 def run(arguments: argparse.Namespace) -> int:
     """Draw the scenes."""
     check_variant(arguments, [arguments.method])
+    check_cluster_options(arguments)
     if arguments.size is not None:
         if getattr(arguments, "width", None) is not None:
             raise UsageError("--size: WIDTH and HEIGHT are given already")
@@ -145,9 +148,12 @@ def _run_one(arguments: argparse.Namespace, method: Chosen) -> int:
     check_json(arguments.json, [arguments.scene])
     if arguments.adaptive_map is not None:
         check_target(arguments.adaptive_map, [arguments.scene, arguments.out])
-    rendering, stages, statistics = _draw(arguments, method, arguments.scene, arguments.out)
+    if wants_cluster(arguments):
+        stages, statistics = _drawn_elsewhere(arguments, method)
+    else:
+        _, stages, statistics = _draw(arguments, method, arguments.scene, arguments.out)
     seconds = sum(stages.values())
-    size = f"{rendering.width} x {rendering.height}"
+    size = "{} x {}".format(*method.settings.drawn_size)
     say(f"{arguments.out}: {size}, {method.name}, {seconds:.2f} s", arguments.quiet)
     if arguments.stats and arguments.json != STANDARD_OUTPUT:
         from converter.commands.tables import print_table
@@ -162,19 +168,41 @@ def _run_one(arguments: argparse.Namespace, method: Chosen) -> int:
     return OK
 
 
+def _drawn_elsewhere(arguments: argparse.Namespace, method: Chosen) -> tuple[dict[str, float], dict[str, Any]]:
+    from converter.commands.drawing_elsewhere import check_elsewhere, draw_one_elsewhere
+
+    check_elsewhere(arguments)
+    if arguments.resume:
+        raise UsageError("--resume: with --workers or --scheduler it is for many scenes, with -o")
+    with native_instead(method.name):
+        return draw_one_elsewhere(arguments, method)
+
+
 def _run_many(arguments: argparse.Namespace, method: Chosen) -> int:
     from converter.commands.json_out import check_json, write_json
-    from converter.commands.many import check_together, draw_all, pictures_of, print_outcomes, status_of
+    from converter.commands.many import Keeper, check_together, draw_all, pictures_of, print_outcomes, status_of
 
     check_together(arguments)
     check_json(arguments.json, arguments.scene)
     pictures = pictures_of(arguments.scene, arguments.pattern)
 
-    def draw_one(scene: Path, picture: Path, bar: "ProgressBar") -> "tuple[Rendering, dict[str, float]]":
+    keeper = Keeper(arguments, method) if arguments.resume else None
+
+    def draw_one(scene: Path, picture: Path, bar: "ProgressBar") -> "tuple[Rendering, dict[str, float]] | None":
+        if keeper is not None and keeper.has(scene, picture):
+            return None
         rendering, stages, _ = _draw(arguments, method, scene, picture, bar)
+        if keeper is not None:
+            keeper.note(picture)
         return rendering, stages
 
-    outcomes = draw_all("whitted render", arguments.scene, pictures, draw_one, arguments.quiet)
+    if wants_cluster(arguments):
+        from converter.commands.drawing_elsewhere import check_elsewhere, draw_elsewhere
+
+        check_elsewhere(arguments)
+        outcomes = draw_elsewhere(arguments, method, arguments.scene, pictures, keeper)
+    else:
+        outcomes = draw_all("whitted render", arguments.scene, pictures, draw_one, arguments.quiet)
     if not arguments.quiet and arguments.json != STANDARD_OUTPUT:
         print_outcomes(outcomes)
     found = [o._asdict() | {"scene": str(o.scene), "picture": str(o.picture)} for o in outcomes]
@@ -191,10 +219,11 @@ def _draw(
     from converter.files import is_special
     from converter.renderers.base import draws_in_passes
 
-    keeping = Keeping(method.name, arguments.resume) if arguments.keep_partial or arguments.resume else None
+    resume = arguments.resume and (arguments.pattern is None or draws_in_passes(method.renderer))
+    keeping = Keeping(method.name, resume) if arguments.keep_partial or resume else None
     if arguments.resume and is_special(out):
         raise UsageError("--resume: OUT must be a file, with what was kept beside it")
-    if arguments.resume and not draws_in_passes(method.renderer):
+    if resume and not draws_in_passes(method.renderer):
         raise UsageError(f"--resume: {method.name} draws a picture in one go")
     chooser, settings = adapting(arguments, method)
     with native_instead(method.name):

@@ -1,0 +1,220 @@
+"""Pictures drawn by the workers of Dask's distributed scheduler, on this machine or elsewhere.
+
+What pictures share goes to a worker once: a job and each of its textures are results of tasks of their own, which Dask
+keeps where they are needed, and makes again where a worker is lost. Textures travel by their bytes, so that workers
+need none of our files. Few pictures are asked for at a time, so that few wait here to be written.
+"""
+
+import logging
+import time
+from collections.abc import Iterable, Iterator
+from contextlib import contextmanager, suppress
+from dataclasses import dataclass, replace
+from hashlib import sha256
+from importlib.util import find_spec
+from itertools import count as counted
+from pathlib import Path
+from typing import Any
+
+from converter.batch.pictures import Drawn, Job, Picture, assembled, encoded, tiles_of
+from converter.batch.run import Result, Wanted
+from converter.batch.worker import Blob, draw_at_worker, same
+from converter.pigments.table import pigment_kind
+from converter.renderers.base import Progress
+from converter.renderers.native import available_cores
+from converter.scene.needs import scene_needs
+
+AHEAD = 3
+"""Pictures that are asked for at a time, for each worker: one is drawn, the others wait."""
+PATIENCE = 20.0
+"""Seconds to wait for a scheduler that does not answer."""
+
+
+class ClusterError(Exception):
+    """Others cannot draw: there is no Dask, no scheduler, or workers die."""
+
+
+@dataclass(frozen=True, slots=True)
+class Cluster:
+    """Who draws: Dask's client, and the threads of each worker's renderer, 0 for as many as it has cores."""
+
+    client: Any
+    threads: int
+
+
+@contextmanager
+def cluster(workers: int | None, scheduler: str | None, quiet: bool) -> Iterator[Cluster]:
+    """So many workers on this machine, or those of the scheduler at an address.
+
+    Raises:
+        ClusterError: Dask is not installed, or the scheduler does not answer.
+
+    """
+    try:
+        from distributed import Client, LocalCluster
+    except ImportError:
+        raise ClusterError("--workers and --scheduler need Dask: pip install 'whitted[cluster]'") from None
+    from converter.commands.notes import say
+
+    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what it has to say, our errors say
+    if scheduler is not None:
+        try:
+            client = Client(scheduler, timeout=PATIENCE)
+        except (OSError, ValueError) as error:
+            raise ClusterError(f"--scheduler: nothing answers at {scheduler}: {error}") from error
+        with client:
+            say(f"note: the workers of {client.scheduler.address} draw{_dashboard(client)}", quiet)
+            yield Cluster(client, 0)
+        return
+    count = workers or 1
+    with (
+        LocalCluster(
+            n_workers=count,
+            threads_per_worker=1,
+            memory_limit=None,
+            silence_logs=logging.CRITICAL,
+            dashboard_address=":0" if find_spec("bokeh") else None,
+        ) as local,
+        Client(local) as client,
+    ):
+        if find_spec("bokeh"):
+            say(f"note: {count} workers draw{_dashboard(client)}", quiet)
+        yield Cluster(client, max(1, available_cores() // count))
+
+
+def _dashboard(client: Any) -> str:
+    return f"; dashboard: {client.dashboard_link}" if find_spec("bokeh") and client.dashboard_link else ""
+
+
+@dataclass(slots=True)
+class _Tiled:
+    """A picture of which bands are drawn: those that are there, by their places."""
+
+    wanted: Wanted
+    missing: int
+    tiles: list[Any]
+
+
+def drawn_by(found: Cluster, wanted: Iterable[Wanted], count: int, progress: Progress) -> Iterator[Result]:
+    """The pictures, as they are finished: large ones in bands, by several workers at once.
+
+    Raises:
+        ClusterError: the scheduler is gone.
+
+    """
+    sending = _Sending(found, count)
+    tasks = (task for each in wanted for task in sending.tasks_of(each))
+    waiting: dict[Any, tuple[_Tiled, int]] = {}
+    done = 0.0
+    more = True
+    while more or waiting:
+        while more and len(waiting) < sending.room:
+            task = next(tasks, None)
+            if task is None:
+                more = False
+            else:
+                waiting[task[0]] = task[1:]
+        for future in _finished(found.client, list(waiting)):
+            tiled, place = waiting.pop(future)
+            done += 1 / len(tiled.tiles)
+            progress(min(done / count, 1))
+            tiled.tiles[place] = _result(future)
+            tiled.missing -= 1
+            if tiled.missing == 0:
+                yield tiled.wanted.number, _whole(tiled)
+
+
+class _Sending:
+    """What is sent to workers, and what of it is there already."""
+
+    def __init__(self, found: Cluster, count: int) -> None:
+        self._client, self._threads = found.client, found.threads
+        self._keys = counted()
+        self._job: tuple[Job | None, Any, list[Any]] = (None, None, [])
+        self._textures: dict[str, Any] = {}
+        workers = max(1, len(self._client.nthreads()))
+        self.room = AHEAD * workers
+        # Fewer pictures than workers are cut finer, so that all have something to do.
+        self._least = 2 * workers if count < workers else 1
+
+    def tasks_of(self, wanted: Wanted) -> Iterator[tuple[Any, _Tiled, int]]:
+        job, picture = wanted.job, wanted.picture
+        tiles = tiles_of(job.settings, scene_needs(job.scene, job.settings).samples, self._least)
+        tiled = _Tiled(wanted, len(tiles), [None] * len(tiles))
+        for place, tile in enumerate(tiles):
+            part = picture if len(tiles) == 1 else replace(picture, crop=tile)
+            yield self._submit(job, part), tiled, place
+
+    def _submit(self, job: Job, picture: Picture) -> Any:
+        if self._job[0] is not job:
+            threads = job.settings.threads or self._threads
+            sent = replace(job, settings=replace(job.settings, threads=threads))
+            blobs = [self._sent_texture(file) for file in sorted(_textures(job))]
+            name = f"job-{next(self._keys)}-{time.time_ns()}"
+            self._job = (job, self._client.submit(same, (name, sent), key=name, pure=False), blobs)
+        _, its_future, blobs = self._job
+        key = f"picture-{next(self._keys)}-{time.time_ns()}"
+        return self._client.submit(draw_at_worker, its_future, blobs, picture, key=key, pure=False)
+
+    def _sent_texture(self, file: Path) -> Any:
+        data = file.read_bytes()
+        name = sha256(data).hexdigest() + file.suffix
+        if name not in self._textures:
+            self._textures[name] = self._client.submit(same, Blob(name, data), key=f"texture-{name}", pure=True)
+        return self._client.submit(_named, str(file), self._textures[name], pure=False)
+
+
+def _named(file: str, blob: Blob) -> tuple[str, Blob]:
+    return file, blob
+
+
+def _textures(job: Job) -> set[Path]:
+    """The files of the pigments that are used."""
+    pigments = (job.scene.pigments[k] for k in scene_needs(job.scene, job.settings).pigments)
+    return {file for pigment in pigments for file in pigment_kind(pigment).files(pigment)}
+
+
+def _finished(client: Any, futures: list[Any]) -> list[Any]:
+    """Those that are finished, one at least.
+
+    Raises:
+        ClusterError: the scheduler is gone.
+
+    """
+    from distributed import wait
+
+    lost_since = None
+    while True:
+        with suppress(TimeoutError):
+            done = wait(futures, timeout=1, return_when="FIRST_COMPLETED").done
+            if client.status == "running":
+                return list(done)
+        if client.status == "running":
+            lost_since = None
+            continue
+        lost_since = lost_since or time.monotonic()
+        if client.status == "closed" or time.monotonic() - lost_since > PATIENCE:
+            raise ClusterError("the scheduler is gone; what is drawn is kept, and the same command goes on from there")
+
+
+def _result(future: Any) -> Drawn | Exception:
+    from distributed import KilledWorker
+
+    try:
+        result = future.result(timeout=PATIENCE)
+    except KilledWorker:
+        return ClusterError("workers die of this picture: have they enough memory?")
+    except Exception as error:
+        return error
+    return result  # type: ignore[no-any-return]
+
+
+def _whole(tiled: _Tiled) -> Drawn | Exception:
+    for tile in tiled.tiles:
+        if isinstance(tile, Exception):
+            return tile
+    if len(tiled.tiles) == 1:
+        return tiled.tiles[0]  # type: ignore[no-any-return]
+    job = tiled.wanted.job
+    rendering = assembled(tiled.tiles, job.settings)
+    return Drawn(encoded(rendering, job.ending), dict(rendering.seconds), dict(rendering.statistics))
