@@ -7,8 +7,9 @@ need none of our files. Few pictures are asked for at a time, so that few wait h
 
 import logging
 import time
+from asyncio import CancelledError
 from collections.abc import Iterable, Iterator
-from contextlib import contextmanager, suppress
+from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from hashlib import sha256
 from importlib.util import find_spec
@@ -73,7 +74,7 @@ def cluster(workers: int | None, scheduler: str | None, quiet: bool) -> Iterator
             threads_per_worker=1,
             memory_limit=None,
             silence_logs=logging.CRITICAL,
-            dashboard_address=":0" if find_spec("bokeh") else None,
+            dashboard_address=":0",  # any that is free
         ) as local,
         Client(local) as client,
     ):
@@ -154,6 +155,8 @@ class _Sending:
             self._job = (job, self._client.submit(same, (name, sent), key=name, pure=False), blobs)
         _, its_future, blobs = self._job
         key = f"picture-{next(self._keys)}-{time.time_ns()}"
+        if self._client.status != "running":
+            raise _gone()
         return self._client.submit(draw_at_worker, its_future, blobs, picture, key=key, pure=False)
 
     def _sent_texture(self, file: Path) -> Any:
@@ -182,19 +185,20 @@ def _finished(client: Any, futures: list[Any]) -> list[Any]:
 
     """
     from distributed import wait
+    from distributed.client import FuturesCancelledError
 
-    lost_since = None
     while True:
-        with suppress(TimeoutError):
-            done = wait(futures, timeout=1, return_when="FIRST_COMPLETED").done
-            if client.status == "running":
-                return list(done)
-        if client.status == "running":
-            lost_since = None
-            continue
-        lost_since = lost_since or time.monotonic()
-        if client.status == "closed" or time.monotonic() - lost_since > PATIENCE:
-            raise ClusterError("the scheduler is gone; what is drawn is kept, and the same command goes on from there")
+        try:
+            return list(wait(futures, timeout=1, return_when="FIRST_COMPLETED").done)
+        except TimeoutError:
+            if client.status != "running":
+                raise _gone() from None
+        except FuturesCancelledError as error:  # as they are once the connection is lost
+            raise _gone() from error
+
+
+def _gone() -> ClusterError:
+    return ClusterError("the scheduler is gone; what is drawn is kept, and the same command goes on from there")
 
 
 def _result(future: Any) -> Drawn | Exception:
@@ -202,6 +206,8 @@ def _result(future: Any) -> Drawn | Exception:
 
     try:
         result = future.result(timeout=PATIENCE)
+    except CancelledError as error:
+        raise _gone() from error
     except KilledWorker:
         return ClusterError("workers die of this picture: have they enough memory?")
     except Exception as error:
