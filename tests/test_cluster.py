@@ -88,7 +88,8 @@ def test_a_worker_needs_no_texture_file(tmp_path):
     here = draw_picture(job, Picture()).data
     blob = dask.Blob("digest.ppm", texture.read_bytes())
     texture.unlink()
-    assert draw_at_worker(("job", job), [(str(texture), blob)], Picture()).data == here
+    (there,) = draw_at_worker(("job", job), [(str(texture), blob)], [Picture()])
+    assert there.data == here
 
 
 @pytest.mark.parametrize("crop", [None, (3, 5, 60, 47)])

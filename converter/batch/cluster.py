@@ -6,16 +6,17 @@ need none of our files. Few pictures are asked for at a time, so that few wait h
 """
 
 import logging
+import signal
+import threading
 import time
-from asyncio import CancelledError
-from collections.abc import Iterable, Iterator
+from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager
 from dataclasses import dataclass, replace
 from hashlib import sha256
 from importlib.util import find_spec
 from itertools import count as counted
 from pathlib import Path
-from typing import Any
+from typing import Any, NamedTuple
 
 from converter.batch.pictures import Drawn, Job, Picture, assembled, encoded, tiles_of
 from converter.batch.run import Result, Wanted
@@ -26,7 +27,9 @@ from converter.renderers.native import available_cores
 from converter.scene.needs import scene_needs
 
 AHEAD = 3
-"""Pictures that are asked for at a time, for each worker: one is drawn, the others wait."""
+"""Tasks at a time, for each worker: one is at work, the others wait."""
+TASK_SECONDS = 0.25
+"""What a task takes, of pictures that take less."""
 PATIENCE = 20.0
 """Seconds to wait for a scheduler that does not answer."""
 
@@ -57,7 +60,9 @@ def cluster(workers: int | None, scheduler: str | None, quiet: bool) -> Iterator
         raise ClusterError("--workers and --scheduler need Dask: pip install 'whitted[cluster]'") from None
     from converter.commands.notes import say
 
-    logging.getLogger("distributed").setLevel(logging.CRITICAL)  # what it has to say, our errors say
+    for name in logging.root.manager.loggerDict:  # what they have to say, our errors say
+        if name.startswith("distributed"):
+            logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     if scheduler is not None:
         try:
             client = Client(scheduler, timeout=PATIENCE)
@@ -69,7 +74,8 @@ def cluster(workers: int | None, scheduler: str | None, quiet: bool) -> Iterator
         return
     count = workers or 1
     with (
-        LocalCluster(
+        _started(
+            LocalCluster,
             n_workers=count,
             threads_per_worker=1,
             memory_limit=None,
@@ -81,6 +87,17 @@ def cluster(workers: int | None, scheduler: str | None, quiet: bool) -> Iterator
         if find_spec("bokeh"):
             say(f"note: {count} workers draw{_dashboard(client)}", quiet)
         yield Cluster(client, max(1, available_cores() // count))
+
+
+def _started(make: Callable[..., Any], **options: Any) -> Any:
+    """A cluster whose processes leave Ctrl-C to this one, which ends them."""
+    if threading.current_thread() is not threading.main_thread():
+        return make(**options)
+    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+    try:
+        return make(**options)
+    finally:
+        signal.signal(signal.SIGINT, before)
 
 
 def _dashboard(client: Any) -> str:
@@ -96,33 +113,69 @@ class _Tiled:
     tiles: list[Any]
 
 
+class _Piece(NamedTuple):
+    """A picture, or a band of one, that is drawn at once."""
+
+    tiled: _Tiled
+    place: int
+    picture: Picture
+
+
 def drawn_by(found: Cluster, wanted: Iterable[Wanted], count: int, progress: Progress) -> Iterator[Result]:
-    """The pictures, as they are finished: large ones in bands, by several workers at once.
+    """The pictures, as they are finished: large ones in bands, by several workers at once, small ones several at a
+    time, for a task costs some milliseconds.
 
     Raises:
         ClusterError: the scheduler is gone.
 
     """
     sending = _Sending(found, count)
-    tasks = (task for each in wanted for task in sending.tasks_of(each))
-    waiting: dict[Any, tuple[_Tiled, int]] = {}
-    done = 0.0
-    more = True
-    while more or waiting:
-        while more and len(waiting) < sending.room:
-            task = next(tasks, None)
-            if task is None:
-                more = False
-            else:
-                waiting[task[0]] = task[1:]
+    pieces = _Pieces(piece for each in wanted for piece in sending.pieces_of(each))
+    waiting: dict[Any, list[_Piece]] = {}
+    seconds, drawn, done = 0.0, 0, 0.0
+    while True:
+        while len(waiting) < sending.room:
+            left = count - done
+            size = min(TASK_SECONDS * drawn / max(seconds, 1e-6), left / (2 * sending.workers)) if drawn else 1
+            if not (group := pieces.take(max(1, int(size)))):
+                break
+            waiting[sending.submit(group)] = group
+        if not waiting:
+            return
         for future in _finished(found.client, list(waiting)):
-            tiled, place = waiting.pop(future)
-            done += 1 / len(tiled.tiles)
-            progress(min(done / count, 1))
-            tiled.tiles[place] = _result(future)
-            tiled.missing -= 1
-            if tiled.missing == 0:
-                yield tiled.wanted.number, _whole(tiled)
+            group = waiting.pop(future)
+            results = _results(future, len(group))
+            for (tiled, place, _), result in zip(group, results, strict=True):
+                if isinstance(result, Drawn):
+                    seconds, drawn = seconds + sum(result.seconds.values()), drawn + 1
+                done += 1 / len(tiled.tiles)
+                progress(min(done / count, 1))
+                tiled.tiles[place] = result
+                tiled.missing -= 1
+                if tiled.missing == 0:
+                    yield tiled.wanted.number, _whole(tiled)
+
+
+class _Pieces:
+    """Pieces in turn, taken in groups of one job."""
+
+    def __init__(self, pieces: Iterator[_Piece]) -> None:
+        self._pieces = pieces
+        self._next: _Piece | None = None
+
+    def take(self, most: int) -> list[_Piece]:
+        """The next ones, so many at most; none at the end."""
+        result: list[_Piece] = []
+        while len(result) < most:
+            piece = self._next or next(self._pieces, None)
+            self._next = None
+            if piece is None:
+                break
+            if result and piece.tiled.wanted.job is not result[0].tiled.wanted.job:
+                self._next = piece
+                break
+            result.append(piece)
+        return result
 
 
 class _Sending:
@@ -133,20 +186,22 @@ class _Sending:
         self._keys = counted()
         self._job: tuple[Job | None, Any, list[Any]] = (None, None, [])
         self._textures: dict[str, Any] = {}
-        workers = max(1, len(self._client.nthreads()))
-        self.room = AHEAD * workers
+        self.workers = max(1, len(self._client.nthreads()))
+        self.room = AHEAD * self.workers
         # Fewer pictures than workers are cut finer, so that all have something to do.
-        self._least = 2 * workers if count < workers else 1
+        self._least = 2 * self.workers if count < self.workers else 1
 
-    def tasks_of(self, wanted: Wanted) -> Iterator[tuple[Any, _Tiled, int]]:
+    def pieces_of(self, wanted: Wanted) -> Iterator[_Piece]:
         job, picture = wanted.job, wanted.picture
         tiles = tiles_of(job.settings, scene_needs(job.scene, job.settings).samples, self._least)
         tiled = _Tiled(wanted, len(tiles), [None] * len(tiles))
         for place, tile in enumerate(tiles):
-            part = picture if len(tiles) == 1 else replace(picture, crop=tile)
-            yield self._submit(job, part), tiled, place
+            yield _Piece(tiled, place, picture if len(tiles) == 1 else replace(picture, crop=tile))
 
-    def _submit(self, job: Job, picture: Picture) -> Any:
+    def submit(self, group: list[_Piece]) -> Any:
+        if self._client.status != "running":
+            raise _gone()
+        job = group[0].tiled.wanted.job
         if self._job[0] is not job:
             threads = job.settings.threads or self._threads
             sent = replace(job, settings=replace(job.settings, threads=threads))
@@ -154,10 +209,9 @@ class _Sending:
             name = f"job-{next(self._keys)}-{time.time_ns()}"
             self._job = (job, self._client.submit(same, (name, sent), key=name, pure=False), blobs)
         _, its_future, blobs = self._job
-        key = f"picture-{next(self._keys)}-{time.time_ns()}"
-        if self._client.status != "running":
-            raise _gone()
-        return self._client.submit(draw_at_worker, its_future, blobs, picture, key=key, pure=False)
+        key = f"pictures-{next(self._keys)}-{time.time_ns()}"
+        pictures = [piece.picture for piece in group]
+        return self._client.submit(draw_at_worker, its_future, blobs, pictures, key=key, pure=False)
 
     def _sent_texture(self, file: Path) -> Any:
         data = file.read_bytes()
@@ -201,18 +255,18 @@ def _gone() -> ClusterError:
     return ClusterError("the scheduler is gone; what is drawn is kept, and the same command goes on from there")
 
 
-def _result(future: Any) -> Drawn | Exception:
+def _results(future: Any, count: int) -> list[Drawn | Exception]:
     from distributed import KilledWorker
+    from distributed.client import FutureCancelledError
 
     try:
-        result = future.result(timeout=PATIENCE)
-    except CancelledError as error:
+        return future.result(timeout=PATIENCE)  # type: ignore[no-any-return]
+    except FutureCancelledError as error:
         raise _gone() from error
     except KilledWorker:
-        return ClusterError("workers die of this picture: have they enough memory?")
+        return [ClusterError("workers die of this picture: have they enough memory?")] * count
     except Exception as error:
-        return error
-    return result  # type: ignore[no-any-return]
+        return [error] * count
 
 
 def _whole(tiled: _Tiled) -> Drawn | Exception:

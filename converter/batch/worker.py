@@ -30,14 +30,23 @@ def same(value: T) -> T:
     return value
 
 
-def draw_at_worker(named_job: tuple[str, Job], textures: Sequence[tuple[str, Blob]], picture: Picture) -> Drawn:
-    """Draw a picture of a job, whose texture files, by their names elsewhere, have these bytes."""
+def draw_at_worker(
+    named_job: tuple[str, Job], textures: Sequence[tuple[str, Blob]], pictures: Sequence[Picture]
+) -> list[Drawn | Exception]:
+    """Draw pictures of a job, whose texture files, by their names elsewhere, have these bytes. An error is a result."""
     global _last
     name, job = named_job
     with _lock:
         if _last is None or _last[0] != name:
             _last = (name, _with_textures(job, {file: _file(blob) for file, blob in textures}))
-        return draw_picture(_last[1], picture)
+        return [_drawn(_last[1], picture) for picture in pictures]
+
+
+def _drawn(job: Job, picture: Picture) -> Drawn | Exception:
+    try:
+        return draw_picture(job, picture)
+    except Exception as error:
+        return error
 
 
 def _with_textures(job: Job, files: dict[str, Path]) -> Job:
