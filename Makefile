@@ -3,6 +3,7 @@
 # make check    run the linters, the type checker, and the compiler with warnings as errors
 # make figures  print the figures of the README, put its tables into it, and draw its charts
 # make format   draw the pictures of docs/format.md
+# make films    draw the films of the README
 # make stability  find where each method fails, and write docs/stability.md
 # make mutants  plant mistakes, and tell which of them the tests do not notice
 # make fuzz     look for inputs that fail, for SECONDS; what it finds is left in out/fuzz
@@ -20,7 +21,7 @@ BIN := .venv/bin
 SOURCES := pyproject.toml CMakeLists.txt $(wildcard native_tracer/src/*.* native_tracer/src/*/* student_tracer/src/*)
 CPP := $(wildcard native_tracer/src/*/*.cpp native_tracer/src/*/*.h student_tracer/src/*.cpp student_tracer/src/*.h)
 
-.PHONY: render test check figures format stability mutants fuzz clean
+.PHONY: render test check figures format films stability mutants fuzz clean
 .DELETE_ON_ERROR:
 
 # Status 1 of the comparison says that the pictures differ, which is no failure to render.
@@ -56,6 +57,11 @@ format: .venv/.installed
 
 fuzz: .venv/.fuzzer
 	$(BIN)/python fuzzing/fuzz_scenes.py $(SECONDS)
+
+films: .venv/.installed
+	for film in orbit carving; do \
+	    $(BIN)/whitted animate scenes/films/$$film.in docs/$$film.webp 160 120 --fps 12 --samples 9 --method native \
+	    || exit 1; done
 
 mutants: .venv/.checkers
 	$(BIN)/python benchmarks/mutants.py

@@ -46,13 +46,14 @@ def draw(
     method: "Method | None" = None,
     ending: str | None = None,
     refinement: Refinement | None = None,
+    bar: ProgressBar | None = None,
 ) -> tuple[Rendering, dict[str, float]]:
     """Draw a scene into an image file, which appears whole or not at all; return the picture and seconds by stage.
 
     With the `method` that the renderer belongs to, regions are named in which it is known to fail; None is `raytrace`.
     With `keeping`, Ctrl-C writes what is drawn before `Interrupted` goes on to the caller, and a file to go on from if
     whole passes are. `ending` chooses the image's format, if `out` does not. With `refinement`, pixels get more samples
-    where it asks for them.
+    where it asks for them. `bar` shows how far it is, in place of one of its own.
 
     Raises:
         SceneError: the scene is no scene.
@@ -73,7 +74,7 @@ def draw(
         for notice in ior_notices_that_show(scene, settings):
             say(f"note: {notice}")
     read = time.perf_counter()
-    with ProgressBar(out.name, quiet) as progress:
+    with bar or ProgressBar(out.name, quiet) as progress:
         try:
             start = _kept(scene, out, settings, keeping, quiet)
             if refinement is not None and draws_adaptively(renderer):

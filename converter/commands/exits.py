@@ -27,6 +27,8 @@ _UNUSABLE = (
     ("converter.renderers.povray", "PovrayError"),
     ("converter.renderers.base", "EffectUnavailable"),
     ("converter.renderers.base", "ResumeError"),
+    ("converter.films.errors", "FilmError"),
+    ("converter.batch.cluster", "ClusterError"),
 )
 _UNAVAILABLE = (("converter.renderers.base", "RendererUnavailable"), ("mitsuba_plugins.backend", "BackendError"))
 """Modules and the errors in them that a user can mend; by name, so that telling one loads nothing."""
@@ -65,10 +67,10 @@ def run(program: str, command: Callable[[], int]) -> int:
         _discard_output()
         return BROKEN_PIPE
     except Exception as error:
-        told = (interrupted, status_of(watch.seen)) if watch.seen else _told(program, error)
-        if told is None:
+        found = (interrupted, status_of(watch.seen)) if watch.seen else told(program, error)
+        if found is None:
             raise
-        message, status = told
+        message, status = found
         tell(message)
         return status
 
@@ -82,7 +84,7 @@ def tell(message: str) -> None:
         print("".join(c if c.isprintable() or c in "\n\t" else "?" for c in message), file=sys.stderr)
 
 
-def _told(program: str, error: BaseException) -> tuple[str, int] | None:
+def told(program: str, error: BaseException) -> tuple[str, int] | None:
     """The message and the exit status for an error that a user can do something about."""
     if isinstance(error, UsageError):
         return f"{program}: {error}\nTry '{program} --help'.", USAGE

@@ -5,6 +5,7 @@ from collections.abc import Sequence
 
 COMMANDS = {
     "render": "draw a scene into an image file",
+    "animate": "draw a film of a scene whose numbers change with time",
     "convert": "write a scene as files that Mitsuba 3 or POV-Ray loads",
     "compare": "draw a scene by two methods, or take two images, and tell the differences",
     "why": "name the mistakes that lead from a scene to a picture",

@@ -28,6 +28,10 @@ class ProgressBar:
         if self._bar is not None:
             self._bar.update(self._bar.task_ids[0], description=_plain(what))
 
+    def part(self, what: str, begin: float, end: float) -> "ProgressBar":
+        """A bar that shows its own share as one of this, from one share to another."""
+        return _Part(self, what, begin, end)
+
     def __call__(self, share: float) -> None:
         """Show that `share` of the picture is finished."""
         if self._bar is None and self._wanted and share < 1 and time.monotonic() - self._started >= PATIENCE:
@@ -55,6 +59,22 @@ class ProgressBar:
         bar.update(bar.task_ids[0], completed=share)  # at the start, so that no speed is taken from it
         bar.start()
         return bar
+
+
+class _Part(ProgressBar):
+    """A part of another bar, which is not closed by it."""
+
+    def __init__(self, whole: ProgressBar, what: str, begin: float, end: float) -> None:
+        super().__init__(what, quiet=True)
+        self._whole, self._begin, self._end = whole, begin, end
+
+    def __call__(self, share: float) -> None:
+        self._whole.tell(self._what, self._begin + (self._end - self._begin) * share)
+
+    def __exit__(
+        self, kind: type[BaseException] | None, error: BaseException | None, trace: TracebackType | None
+    ) -> None:
+        self(1.0)
 
 
 def _plain(text: str) -> str:

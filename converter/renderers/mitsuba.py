@@ -71,7 +71,8 @@ class MitsubaRenderer:
         mitsuba_scene = self._load(scene, settings)
         built = time.perf_counter()
 
-        pixels = np.zeros((settings.height, settings.width, 3), dtype=np.float32)
+        width, height = settings.drawn_size
+        pixels = np.zeros((height, width, 3), dtype=np.float32)
         from mitsuba_plugins.integrators import pictures  # when a variant is set
 
         integrator, sensor = mitsuba_scene.integrator(), mitsuba_scene.sensors()[0]
@@ -86,7 +87,7 @@ class MitsubaRenderer:
                 "pixels_too_deep": integrator.pixels_too_deep,
             }
             whole = _whole_passes(integrator.sums, pixels.shape, all_passes, variant)
-            return Rendering(pixels, settings.width, settings.height, seconds, statistics, whole)
+            return Rendering(pixels, width, height, seconds, statistics, whole)
 
         try:
             with _threads(settings.threads):
@@ -96,7 +97,7 @@ class MitsubaRenderer:
                     sums = _sums_to_go_on_from(start, pixels)
                     bands = pictures.bands_by_passes(integrator, mitsuba_scene, sensor, sums, progress)
                 for first, color in bands:
-                    rows = np.moveaxis(np.asarray(color), 0, -1).reshape(-1, settings.width, 3)
+                    rows = np.moveaxis(np.asarray(color), 0, -1).reshape(-1, width, 3)
                     pixels[first : first + len(rows)] = rows
         except KeyboardInterrupt:
             raise Interrupted(rendering()) from None

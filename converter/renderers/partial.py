@@ -9,6 +9,7 @@ import json
 import sys
 import zlib
 from dataclasses import fields
+from functools import lru_cache
 from hashlib import sha256
 from pathlib import Path
 from typing import Any
@@ -40,7 +41,7 @@ def write_partial(file: Path, passes: Passes, scene: Scene, settings: Settings, 
     """
     parts = [memoryview(part).cast("B") for part in (passes.colors, passes.too_deep)]
     header = {
-        "of": _identity(scene, settings, method),
+        "of": identity(scene, settings, method),
         "done": passes.done,
         "total": passes.total,
         "notes": dict(passes.notes),
@@ -61,7 +62,8 @@ def read_partial(file: Path, scene: Scene, settings: Settings, method: str) -> P
         ResumeError: it holds none, or those of another picture; the message says what is different.
 
     """
-    pixels = settings.width * settings.height
+    columns, rows = settings.drawn_size
+    pixels = columns * rows
     with file.open("rb") as opened:
         if opened.read(len(_MAGIC)) != _MAGIC:
             raise ResumeError(f"{file}: this is no partial picture of this program and machine")
@@ -71,7 +73,7 @@ def read_partial(file: Path, scene: Scene, settings: Settings, method: str) -> P
             then, done, total, notes = header["of"], header["done"], header["total"], header["notes"]
         except (ValueError, KeyError, TypeError):
             raise ResumeError(f"{file}: its header is damaged") from None
-        _check_same(file, then, _identity(scene, settings, method))
+        _check_same(file, then, identity(scene, settings, method))
         body = memoryview(opened.read(pixels * _BYTES_A_PIXEL))
         kept = opened.read()
     if len(body) != pixels * _BYTES_A_PIXEL or _sum([text, body]) != kept:
@@ -86,7 +88,7 @@ def _sum(parts: "list[bytes | memoryview]") -> bytes:
     return b"%08x\n" % result
 
 
-def _identity(scene: Scene, settings: Settings, method: str) -> dict[str, Any]:
+def identity(scene: Scene, settings: Settings, method: str) -> dict[str, Any]:
     """What decides a picture's bytes, by the names that users know."""
     from converter.commands.version import version
 
@@ -94,13 +96,20 @@ def _identity(scene: Scene, settings: Settings, method: str) -> dict[str, Any]:
     needs = scene_needs(scene, settings)
     for i in needs.pigments:
         for texture in pigment_kind(scene.pigments[i]).files(scene.pigments[i]):
-            digest.update(sha256(texture.read_bytes()).digest())
+            about = texture.stat()
+            digest.update(_texture_digest(texture, about.st_mtime_ns, about.st_size))
     result = {"version": version(), "scene": digest.hexdigest(), "method": method}
     values = {f.name: getattr(settings, f.name) for f in fields(settings) if f.name != "threads"}
     values |= {"samples": needs.samples, "background": needs.background, "max_depth": needs.max_depth}
     result |= {f"--{name.replace('_', '-')}": value for name, value in values.items()}
     result["size"] = f"{result.pop('--width')} x {result.pop('--height')}"
     return json.loads(json.dumps(result))  # type: ignore[no-any-return]
+
+
+@lru_cache(maxsize=64)
+def _texture_digest(texture: Path, modified: int, size: int) -> bytes:
+    """A file's digest, taken once for the many pictures of a film."""
+    return sha256(texture.read_bytes()).digest()
 
 
 def _check_same(file: Path, then: Any, now: dict[str, Any]) -> None:

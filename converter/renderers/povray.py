@@ -47,7 +47,8 @@ class Supersampling:
 class PovrayRenderer:
     """Draws with the program `povray`, version 3.7, what `whitted convert SCENE FILE.pov` writes.
 
-    Colours come in steps of an 8000th, and those beyond 0..8 are clamped before samples are averaged.
+    It always draws the whole picture. Colours come in steps of an 8000th, and those beyond 0..8 are clamped before
+    samples are averaged.
 
     Attributes:
         supersampling: in addition to what settings ask for.
@@ -102,10 +103,12 @@ class PovrayRenderer:
             fine = np.asarray(read_texture(Path(folder, "picture.ppm")).texels)
         cells = fine.reshape(settings.height, n, settings.width, n, 3)
         pixels[:] = BRIGHTEST * cells.mean(axis=(1, 3), dtype=np.float64)
+        left, top, right, bottom = settings.drawn
+        part = np.ascontiguousarray(pixels[top:bottom, left:right])
         if progress is not None:
             progress(1.0)
         statistics = {"primary": rays, "clamped": bool((fine >= 1).any()), "omissions": exported.omissions}
-        return Rendering(pixels, settings.width, settings.height, seconds, statistics)
+        return Rendering(part, *settings.drawn_size, seconds, statistics)
 
 
 def _dimmed(scene: Scene, settings: Settings) -> tuple[Scene, Settings]:

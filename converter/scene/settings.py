@@ -10,6 +10,9 @@ Specular = Literal["phong", "blinn"]
 Points = Literal["stratified", "independent"]
 IorReading = Literal["auto", "ratio", "index"]
 
+Crop = tuple[int, int, int, int]
+"""A part of a picture: the column and row of its first pixel, and those behind its last."""
+
 MOST_THREADS = 1024
 SAMPLES = 16
 """Rays per pixel of a scene that is sampled, where nobody asks for another number."""
@@ -33,6 +36,7 @@ class Settings:
         seed: start of the random numbers of scenes that are sampled.
         points: random numbers of a pixel's samples that are stratified, or independent: to see what that is worth.
         threads: worker threads; 0 means one for each core.
+        crop: what is drawn of the picture; None is all of it. Its pixels are those of the whole.
 
     """
 
@@ -48,6 +52,18 @@ class Settings:
     seed: int = 0
     points: Points = "stratified"
     threads: int = 0
+    crop: Crop | None = None
+
+    @property
+    def drawn(self) -> Crop:
+        """The part of the picture that is drawn, be it all."""
+        return self.crop or (0, 0, self.width, self.height)
+
+    @property
+    def drawn_size(self) -> tuple[int, int]:
+        """Columns and rows that are drawn."""
+        left, top, right, bottom = self.drawn
+        return right - left, bottom - top
 
     def rays_a_pixel(self, sampled: bool = False) -> int:
         """How many rays a pixel has, in a scene in which something is random, or not."""

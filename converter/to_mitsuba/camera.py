@@ -20,6 +20,7 @@ def sensor(camera: Camera, settings: Settings, samples: int) -> dict[str, Any]:
             "type": "hdrfilm",
             "width": settings.width,
             "height": settings.height,
+            **(_crop_window(settings) if settings.crop is not None else {}),
             "pixel_format": "rgb",
             "component_format": "float32",
             "rfilter": {"type": "box"},
@@ -27,3 +28,9 @@ def sensor(camera: Camera, settings: Settings, samples: int) -> dict[str, Any]:
         # The regular grid of n x n cells, for integrators that draw samples from it.
         "sampler": {"type": "stratified", "sample_count": samples, "jitter": False, "seed": settings.seed},
     }
+
+
+def _crop_window(settings: Settings) -> dict[str, int]:
+    left, top, *_ = settings.drawn
+    width, height = settings.drawn_size
+    return {"crop_offset_x": left, "crop_offset_y": top, "crop_width": width, "crop_height": height}

@@ -291,8 +291,9 @@ def _rows(film: Any, first: int, count: int) -> Any:
 def _corners(film: Any, pixel: Any) -> Any:
     """Top left corners (Point2d) of pixels, by their numbers in the film's crop window, row by row."""
     columns = dr.opaque(mi.UInt32, film.crop_size().x)  # opaque, so that pictures of all sizes share one kernel
+    left, top = (dr.opaque(mi.Float64, at) for at in film.crop_offset())  # and all parts of them
     row = pixel // columns
-    return mi.Point2d(pixel - row * columns, row) + mi.Point2d(film.crop_offset())
+    return mi.Point2d(pixel - row * columns, row) + mi.Point2d(left, top)
 
 
 def block(bands: Any, film: Any) -> Any:

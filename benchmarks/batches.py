@@ -1,0 +1,86 @@
+"""What drawing many pictures costs: workers' efficiency, and how a worker's memory grows.
+
+python benchmarks/batches.py efficiency [FRAMES]   500 frames by native, by one process and by two workers
+python benchmarks/batches.py memory [SCENES]       memory of a process over 1,000 scenes, by native and by Mitsuba
+"""
+
+import sys
+import time
+from argparse import Namespace
+from collections.abc import Iterator
+from pathlib import Path
+
+from converter.batch.cluster import cluster, drawn_by
+from converter.batch.pictures import Job, Picture, draw_picture
+from converter.batch.run import Wanted, draw_pictures
+from converter.films.script import Changes, read_script
+from converter.scene.parser import load_scene
+from converter.scene.settings import Settings
+
+FILM = Path(__file__).parents[1] / "scenes" / "films" / "carving.in"
+WORKERS = 2
+
+
+def main(what: str, count: int | None = None) -> None:
+    """Print it."""
+    if what == "efficiency":
+        efficiency(count or 500)
+    else:
+        memory(count or 1000)
+
+
+def job_of(method: str, width: int, height: int) -> tuple[Job, list[Changes]]:
+    """A film, and what changes in its frames, a hundred of which are a turn."""
+    scene = load_scene(FILM)
+    script = read_script(FILM.with_suffix(".toml"), scene, FILM.read_text())
+    job = Job(scene, Settings(width=width, height=height, threads=1), method, None, ".png")
+    return job, [script.changes(k * script.seconds / 100, 1 / 24) for k in range(100)]
+
+
+def efficiency(count: int) -> None:
+    """Wall-clock time of frames at 320 x 240, one thread each."""
+    job, changes = job_of("native", 320, 240)
+
+    def wanted() -> Iterator[Wanted]:
+        return (Wanted(k, job, Picture(changes[k % len(changes)])) for k in range(count))
+
+    started = time.perf_counter()
+    with draw_pictures(Namespace(workers=None, scheduler=None, quiet=True), wanted(), count, _nothing) as results:
+        here = [found for _, found in results]
+    alone = time.perf_counter() - started
+    begun = time.perf_counter()
+    with cluster(WORKERS, None, True) as found:
+        ready = time.perf_counter()
+        for _ in drawn_by(found, (Wanted(k, job, Picture(changes[0])) for k in range(2 * WORKERS)), count, _nothing):
+            pass
+        warm = time.perf_counter()
+        for _ in drawn_by(found, wanted(), count, _nothing):
+            pass
+        together = time.perf_counter() - warm
+    print(f"{count} frames, one process: {alone:.2f} s, {1000 * alone / len(here):.1f} ms a frame")
+    share = 100 * alone / together / WORKERS
+    print(f"{WORKERS} workers: {together:.2f} s, {share:.1f} % of ideal; {ready - begun:.2f} s to start them")
+
+
+def memory(count: int) -> None:
+    """Resident memory of this process after some scenes, all different, and after all."""
+    for method in ("native", "mitsuba"):
+        job, changes = job_of(method, 16, 12)
+        sizes = []
+        for k in range(count):
+            draw_picture(job, Picture(changes[k % len(changes)]))
+            if k + 1 in (count // 10, count):
+                sizes.append(_resident())
+        print(f"{method}: {sizes[0]:.0f} MiB after {count // 10} scenes, {sizes[1]:.0f} MiB after {count}")
+
+
+def _resident() -> float:
+    return int(Path("/proc/self/statm").read_text().split()[1]) * 4096 / 2**20
+
+
+def _nothing(share: float) -> None:
+    pass
+
+
+if __name__ == "__main__":
+    main(sys.argv[1], *map(int, sys.argv[2:]))

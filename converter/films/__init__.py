@@ -1,0 +1,1 @@
+"""Films: scenes whose numbers change with time, by keyframes."""

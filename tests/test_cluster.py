@@ -1,0 +1,189 @@
+"""Pictures drawn by workers of Dask: the same bytes, whatever happens to the workers."""
+
+import os
+import signal
+import threading
+import time
+from argparse import Namespace
+from dataclasses import replace
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from distributed import Client, LocalCluster
+
+from converter.batch import cluster as dask
+from converter.batch import pictures
+from converter.batch.pictures import Job, Picture, draw_picture, tiles_of
+from converter.batch.run import Wanted
+from converter.batch.worker import draw_at_worker
+from converter.commands import main
+from converter.scene.parser import load_scene
+from converter.scene.settings import Settings
+
+SCENES = Path(__file__).parents[1] / "scenes"
+NATIVE = ("--method", "native", "-q")
+
+
+@pytest.fixture(scope="module")
+def scheduler():
+    """The address of a scheduler with two workers, each a process."""
+    with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs=50) as local:
+        yield local.scheduler_address
+
+
+@pytest.fixture
+def whitted(capsys):
+    def run(*words):
+        status = main.main(list(map(str, words)))
+        told = capsys.readouterr()
+        return status, told.out, told.err
+
+    return run
+
+
+def pids(address):
+    with Client(address, set_as_default=False) as client:
+        return list(client.run(os.getpid).values())
+
+
+def files(folder):
+    return {file.name: file.read_bytes() for file in folder.iterdir() if file.name[0] != "."}
+
+
+def test_a_film_has_the_same_bytes(whitted, scheduler, tmp_path):
+    words = (24, 18, "--frames", "7", "--fps", "3", *NATIVE)
+    for folder, more in (("one", ()), ("two", ("--scheduler", scheduler))):
+        assert whitted("animate", SCENES / "films/orbit.in", tmp_path / folder / "{frame}.png", *words, *more) == (
+            0,
+            "",
+            "",
+        )
+    assert len(files(tmp_path / "one")) == 7
+    assert files(tmp_path / "one") == files(tmp_path / "two")
+
+
+def test_scenes_with_textures_and_a_bad_one(whitted, scheduler, tmp_path):
+    """Textures go with them: workers do not look for files."""
+    bad = tmp_path / "bad.in"
+    bad.write_text("nonsense")
+    scenes = [SCENES / "figure1.in", bad, SCENES / "tiles.in", SCENES / "sampled/dew.in"]
+    words = ("--size", "24x18", *NATIVE)
+    for folder, more in (("one", ()), ("two", ("--scheduler", scheduler))):
+        status, _, err = whitted("render", *scenes, "-o", tmp_path / folder / "{name}.ppm", *words, *more)
+        assert status == 2
+        assert err.count("bad.in:1:1") == 1
+    assert len(files(tmp_path / "one")) == 3
+    assert files(tmp_path / "one") == files(tmp_path / "two")
+
+
+def test_a_worker_needs_no_texture_file(tmp_path):
+    texture = tmp_path / "t.ppm"
+    texture.write_bytes(b"P6 2 1 255\n\xff\x00\x00\x00\x00\xff")
+    (tmp_path / "s.in").write_text(
+        "0 0 -10 0 0 0 0 1 0 40 2 0 0 0 1 1 1 1 0 0 5 5 -9 .8 .8 .8 1 0 0\n"
+        "1 texmap t.ppm .3 0 0 0 0 .3 0 0  1 .5 .5 0 1 0 0 0  1 0 0 sphere 0 0 0 3\n"
+    )
+    job = Job(load_scene(tmp_path / "s.in"), Settings(12, 9), "native", None, ".ppm")
+    here = draw_picture(job, Picture()).data
+    blob = dask.Blob("digest.ppm", texture.read_bytes())
+    texture.unlink()
+    (there,) = draw_at_worker(("job", job), [(str(texture), blob)], [Picture()])
+    assert there.data == here
+
+
+@pytest.mark.parametrize("crop", [None, (3, 5, 60, 47)])
+def test_tiles_make_the_picture(scheduler, monkeypatch, crop):
+    monkeypatch.setattr(pictures, "TILE_RAYS", 700)
+    settings = Settings(64, 48, samples=4, crop=crop, threads=1)
+    job = Job(load_scene(SCENES / "figure1.in"), settings, "native", None, ".png")
+    tiles = tiles_of(settings, 4)
+    assert len(tiles) > 10
+    assert tiles[0][1] == settings.drawn[1]
+    assert tiles[-1][3] == settings.drawn[3]
+    assert all(one[3] == other[1] for one, other in pairwise(tiles))
+    shares = []
+    with dask.cluster(None, scheduler, True) as found:
+        ((number, drawn),) = dask.drawn_by(found, [Wanted(5, job)], 1, shares.append)
+    whole = draw_picture(job, Picture())
+    assert number == 5
+    assert drawn.data == whole.data
+    for name in ("rays", "shadow", "deepest", "pixels_too_deep"):
+        assert drawn.statistics[name] == whole.statistics[name]
+    assert shares == sorted(shares)
+    assert shares[-1] == pytest.approx(1)
+
+
+def test_killed_workers_cost_time_only(scheduler):
+    """Both are killed by force in the middle."""
+    job = Job(load_scene(SCENES / "figure1.in"), Settings(160, 120, threads=1), "native", None, ".ppm")
+    settings = [replace(job.settings, background=(k / 100, 0.0, 0.0)) for k in range(60)]
+    wanted = [Wanted(k, replace(job, settings=each)) for k, each in enumerate(settings)]
+    found, killed = {}, []
+    with dask.cluster(None, scheduler, True) as there:
+        for number, drawn in dask.drawn_by(there, wanted, len(wanted), lambda _: None):
+            assert number not in found
+            assert not isinstance(drawn, Exception)
+            found[number] = drawn.data
+            if len(found) in (5, 20):
+                killed.append(pids(scheduler)[0])
+                os.kill(killed[-1], signal.SIGKILL)
+    assert len(set(killed)) == 2
+    assert sorted(found) == list(range(60))
+    assert all(found[k] == draw_picture(wanted[k].job, Picture()).data for k in (0, 19, 21, 59))
+
+
+def test_a_scheduler_that_goes_loses_no_picture(whitted, tmp_path, monkeypatch):
+    """What is drawn is there, and the same command goes on from it."""
+    monkeypatch.setattr(dask, "PATIENCE", 0.5)
+    words = ("animate", SCENES / "films/orbit.in", tmp_path / "{frame}.ppm", 40, 30, "--frames", "40", *NATIVE)
+    local = LocalCluster(n_workers=1, processes=False, dashboard_address=":0", silence_logs=50)
+
+    def leave():
+        while len(files(tmp_path)) < 3:
+            time.sleep(0.01)
+        local.close()
+
+    thread = threading.Thread(target=leave)
+    thread.start()
+    status, _, err = whitted(*words, "--scheduler", local.scheduler_address)
+    thread.join()
+    assert status == 2
+    assert "the same command goes on from there" in err
+    there = files(tmp_path)
+    assert 3 <= len(there) < 40
+    times = {name: (tmp_path / name).stat().st_mtime_ns for name in there}
+    assert whitted(*words)[0] == 0
+    assert times == {name: (tmp_path / name).stat().st_mtime_ns for name in there}
+    assert len(files(tmp_path)) == 40
+    assert {file.name for file in tmp_path.iterdir() if file.name[0] == "."} == {".whitted-pictures"}
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (
+            ("--workers", "2", "--scheduler", "tcp://127.0.0.1:1"),
+            "--workers and --scheduler: the scheduler has its own",
+        ),
+        (("--workers", "0"), "argument --workers: must lie between 1 and 1024, found 0"),
+        (("--scheduler", "tcp://127.0.0.1:1"), "--scheduler: nothing answers at tcp://127.0.0.1:1"),
+        (("--scheduler", "here"), "--scheduler: nothing answers at here"),
+        (("--workers", "2", "--adaptive", "8"), "--adaptive: not with --workers or --scheduler"),
+    ],
+)
+def test_usage(whitted, tmp_path, monkeypatch, options, message):
+    monkeypatch.setattr(dask, "PATIENCE", 0.5)
+    status, _, err = whitted("render", SCENES / "figure1.in", tmp_path / "a.ppm", 8, 6, *NATIVE, *options)
+    assert status == 2
+    assert err.startswith(f"whitted render: {message}")
+    assert not list(tmp_path.iterdir())
+
+
+def test_workers_of_our_own(tmp_path):
+    job = Job(load_scene(SCENES / "figure1.in"), Settings(16, 12), "native", None, ".ppm")
+    arguments = Namespace(workers=1, scheduler=None, quiet=True)
+    from converter.batch.run import draw_pictures
+
+    with draw_pictures(arguments, [Wanted(0, job)], 1, lambda _: None) as results:
+        assert [drawn.data for _, drawn in results] == [draw_picture(job, Picture()).data]

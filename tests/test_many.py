@@ -1,0 +1,114 @@
+"""Many scenes in one process, and parts of pictures."""
+
+import json
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from converter.commands import main
+from converter.images.texture import read_texture
+
+SCENES = Path(__file__).parents[1] / "scenes"
+NATIVE = ("--method", "native")
+
+
+def texels(file):
+    texture = read_texture(file)
+    return np.reshape(texture.texels, (texture.height, texture.width, 3))
+
+
+@pytest.fixture
+def whitted(capsys):
+    def run(*words):
+        status = main.main(list(map(str, words)))
+        told = capsys.readouterr()
+        return status, told.out, told.err
+
+    return run
+
+
+@pytest.mark.parametrize(
+    ("options", "part"),
+    [
+        (("--crop", "3,5,30,17"), (slice(5, 17), slice(3, 30))),
+        (("--rows", "4:9"), (slice(4, 9), slice(None))),
+        (("--rows", ":9"), (slice(9), slice(None))),
+        (("--rows", "20:"), (slice(20, None), slice(None))),
+    ],
+)
+@pytest.mark.parametrize("samples", [4, 25])
+def test_a_part_has_the_pixels_of_the_whole(whitted, tmp_path, options, part, samples, method="native"):
+    words = (40, 30, "--method", method, "--samples", samples, "-q")
+    scene = SCENES / "sampled" / "billiards.in"
+    assert whitted("render", scene, tmp_path / "whole.pfm", *words)[0] == 0
+    assert whitted("render", scene, tmp_path / "part.pfm", *words, *options)[0] == 0
+    whole = texels(tmp_path / "whole.pfm")
+    assert np.array_equal(texels(tmp_path / "part.pfm"), whole[part])
+    assert len(np.unique(whole[part])) > 50
+
+
+@pytest.mark.parametrize("samples", [1, 25])
+def test_a_part_by_mitsuba(whitted, tmp_path, samples):
+    part = (slice(5, 17), slice(3, 30))
+    words = (whitted, tmp_path, ("--crop", "3,5,30,17"), part, samples, "mitsuba-analytic")
+    test_a_part_has_the_pixels_of_the_whole(*words)
+
+
+@pytest.mark.parametrize(
+    ("options", "message"),
+    [
+        (("--crop", "3,5,3,17"), "--crop: this is no part of a picture of 40 x 30 pixels"),
+        (("--crop", "3,5,41,17"), "--crop: this is no part of a picture of 40 x 30 pixels"),
+        (("--crop", "3,5,7"), "argument --crop: must be four numbers with commas between them, found '3,5,7'"),
+        (("--rows", "31:"), "--rows: this is no part of a picture of 40 x 30 pixels"),
+        (("--rows", "3"), "argument --rows: must be FIRST:END, such as 0:100, found '3'"),
+        (("--rows", "3:4", "--adaptive", "8"), "--adaptive: what a pixel's neighbours are decides"),
+        (("--size", "3x4"), "--size: WIDTH and HEIGHT are given already"),
+    ],
+)
+def test_no_part(whitted, tmp_path, options, message):
+    status, _, err = whitted("render", SCENES / "figure1.in", tmp_path / "a.png", 40, 30, *NATIVE, *options)
+    assert status == 2
+    assert err.startswith(f"whitted render: {message}")
+
+
+def test_many_scenes(whitted, tmp_path):
+    """One that is bad does not stop the rest, and the status tells of it."""
+    bad = tmp_path / "bad.in"
+    bad.write_text("nonsense")
+    scenes = (SCENES / "figure1.in", bad, SCENES / "whitted.in", tmp_path / "missing.in")
+    pattern, words = tmp_path / "new" / "{number:02}_{name}.ppm", ("--size", "40x30", *NATIVE)
+    status, out, err = whitted("render", *scenes[:2], "-o", pattern, *scenes[2:], *words, "--json", tmp_path / "j")
+    assert status == 2
+    assert err.count("bad.in:1:1: expected the eye's x") == err.count("missing.in: there is no such file") == 1
+    assert out.splitlines()[-1].startswith("2 of 4 scenes drawn")
+    assert [line.endswith("failed") for line in out.splitlines()[1:-1]] == [False, True, False, True]
+    assert sorted(file.name for file in (tmp_path / "new").glob("*.ppm")) == ["01_figure1.ppm", "03_whitted.ppm"]
+    found = json.loads((tmp_path / "j").read_text())["pictures"]
+    assert [each["status"] for each in found] == [0, 2, 0, 2]
+    assert found[0]["statistics"]["rays"] > 1200
+    assert whitted("render", SCENES / "whitted.in", tmp_path / "one.ppm", 40, 30, *NATIVE)[0] == 0
+    assert (tmp_path / "one.ppm").read_bytes() == (tmp_path / "new" / "03_whitted.ppm").read_bytes()
+
+
+def test_many_quietly(whitted, tmp_path):
+    words = ("--size", "8x6", *NATIVE, "-q")
+    assert whitted("render", SCENES / "figure1.in", f"-o{tmp_path}/{{name}}.ppm", *words) == (0, "", "")
+
+
+@pytest.mark.parametrize(
+    ("pattern", "message"),
+    [
+        ("a.ppm", "figure1.in would both become a.ppm: {name} is"),
+        ("{nome}.ppm", "-o/--out: there is no {nome}: a pattern may have {name} and {number}"),
+        ("{name.ppm", "-o/--out: '{name.ppm' is no pattern: expected '}' before end of string"),
+        ("{number:q}.ppm", "-o/--out: '{number:q}.ppm' is no pattern: Unknown format code 'q'"),
+    ],
+)
+def test_no_pattern(whitted, tmp_path, monkeypatch, pattern, message):
+    monkeypatch.chdir(tmp_path)
+    status, _, err = whitted("render", SCENES / "figure1.in", SCENES / "figure1.in", "-o", pattern)
+    assert status == 2
+    assert message in err
+    assert not list(tmp_path.iterdir())
