@@ -1,6 +1,6 @@
 # make render   draw a scene with Mitsuba and compare it with the native tracer
 # make test     run the tests
-# make check    run the linters, the type checker, and the compiler with warnings as errors
+# make check    run the linters, the type checker, the compiler with warnings as errors, and make docs
 # make figures  print the figures of the README, and draw its chart
 # make format   draw the pictures of docs/format.md
 # make stability  find where each method fails, and write docs/stability.md
@@ -47,6 +47,7 @@ check: .venv/.checkers
 	    -DCMAKE_MAKE_PROGRAM=$(CURDIR)/$(BIN)/ninja -DPython_EXECUTABLE=$(CURDIR)/$(BIN)/python \
 	    -Dnanobind_DIR=$$($(BIN)/python -m nanobind --cmake_dir) >/dev/null
 	$(BIN)/cmake --build build/check
+	$(site)
 
 figures: .venv/.installed
 	$(BIN)/python benchmarks/figures.py
@@ -81,8 +82,10 @@ wheel: .venv/.packager
 	build/wheel/venv/bin/python -m pip install --quiet --disable-pip-version-check dist/*.whl
 	cd build/wheel && venv/bin/python $(CURDIR)/packaging/check_wheel.py $(CURDIR)/scenes
 
-docs: .venv/.writer
-	NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict
+docs: .venv/.checkers
+	$(site)
+
+site = NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict
 
 # A build of its own, tried without what `pip install` has left; the sanitizers have to be loaded before Python.
 sanitize: .venv/.checkers
@@ -143,9 +146,8 @@ clean:
 
 # Each is a set of tools, by the extra of that name.
 .venv/.packager: EXTRA = wheel
-.venv/.writer: EXTRA = docs
 .venv/.coverage: EXTRA = check,coverage
-.venv/.packager .venv/.writer .venv/.coverage: .venv/.installed
+.venv/.packager .venv/.coverage: .venv/.installed
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[$(EXTRA)]'
 	@touch $@
 

@@ -1,7 +1,7 @@
 """Makes one site of docs/ and the pages that lie elsewhere: mkdocs knows one folder only.
 
-The site has docs/ at its root, the README as its first page, and the scenes in a folder beside them; links are turned to
-where that puts things.
+The site has docs/ at its root, the README as its first page, and the scenes in a folder beside them; links are turned
+to where that puts things.
 """
 
 import re

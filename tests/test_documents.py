@@ -33,7 +33,7 @@ scenes = pytest.mark.parametrize("scene", SCENES, ids=lambda scene: scene.stem)
 def test_links_and_pictures_are_there(page: Path) -> None:
     targets = re.findall(r"\]\(([^)\s]+)\)", page.read_text(encoding="utf-8"))
     ours = [target.partition("#") for target in targets if not target.startswith("https:")]
-    assert ours or page not in FIRST
+    assert ours or page.name != "README.md"
     lost = [name for name, _, _ in ours if not (page.parent / name).exists()]
     assert not lost
     for name, _, anchor in ours:

@@ -35,7 +35,7 @@ def test_saves_the_bytes_of_the_program(tmp_path):
     mine, theirs = tmp_path / "mine.ppm", tmp_path / "theirs.ppm"
     picture = whitted.render(whitted.load_scene(FIGURE), 64, 48, samples=4)
     picture.save(mine)
-    options = ["--method", "native", "--samples", "4", "--quiet"]
+    options = ["--method", "native", "--samples", "4"]
     assert main.main(["render", str(FIGURE), str(theirs), "64", "48", *options]) == 0
     assert mine.read_bytes() == theirs.read_bytes()
     assert picture.statistics["rays"] > 64 * 48 * 4
@@ -67,7 +67,7 @@ def test_compares():
 
 def test_tells_what_is_wrong():
     scene = whitted.load_scene(FIGURE)
-    with pytest.raises(ValueError, match="there is no method 'natve'; did you mean 'native'"):
+    with pytest.raises(ValueError, match="there is no method 'natve'"):
         whitted.render(scene, method="natve")
     with pytest.raises(TypeError, match="colour"):
         whitted.render(scene, colour=1)
