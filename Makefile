@@ -1,7 +1,7 @@
 # make render   draw a scene with Mitsuba and compare it with the native tracer
 # make test     run the tests
 # make check    run the linters, the type checker, the compiler with warnings as errors, and make docs
-# make figures  print the figures of the README, and draw its chart
+# make figures  print the figures of docs/figures.md, and draw its chart
 # make format   draw the pictures of docs/format.md
 # make stability  find where each method fails, and write docs/stability.md
 # make mutants  plant mistakes, and tell which of them the tests do not notice
@@ -89,7 +89,7 @@ site = NO_MKDOCS_2_WARNING=1 $(BIN)/mkdocs build --quiet --strict
 
 # A build of its own, tried without what `pip install` has left; the sanitizers have to be loaded before Python.
 sanitize: .venv/.checkers
-	$(call native_build,build/sanitize,RelWithDebInfo,-DWHITTED_SANITIZE=ON)
+	$(call native_build,build/sanitize,None,-DCMAKE_CXX_FLAGS='-O1 -g1' -DWHITTED_SANITIZE=ON)
 	$(call native_packages,build/sanitize)
 	LD_PRELOAD="$$($(CXX) -print-file-name=libasan.so) $$($(CXX) -print-file-name=libubsan.so)" \
 	    ASAN_OPTIONS=detect_leaks=0:allocator_may_return_null=1 UBSAN_OPTIONS=halt_on_error=1:print_stacktrace=1 \
@@ -113,7 +113,7 @@ endef
 
 # pytest with these, the other packages of this folder, and what is installed, but for its editable packages.
 pytest_with = PYTHONPATH=$(1)/packages:$(CURDIR):$$($(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("platlib"))') \
-    $(BIN)/python -S -m pytest -q -p no:cacheprovider
+    $(BIN)/python -S -P -m pytest -q -p no:cacheprovider
 
 # Packages of them.
 define native_packages
