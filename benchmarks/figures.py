@@ -1,4 +1,4 @@
-"""Prints the figures of the README: agreement of the renderers on every scene, why pixels disagree, speed, memory.
+"""Prints the figures of docs/figures.md: agreement of the renderers on every scene, why pixels disagree, speed, memory.
 
     python benchmarks/figures.py [memory] [agreement] [bytes] [classes] [speed] [samples] [sampled]
                                  [adaptive]

@@ -7,7 +7,7 @@
 
 A digit is typed after a number of the camera, and deleted again. Time runs from the key's event to the frame of the
 browser after the one in which the whole picture was put on its canvas. Needs Debian's Chromium and the package's `test`
-extra. `--picture` and `--mistake` draw the README's pictures instead.
+extra. `--picture` and `--mistake` draw the pictures of docs/serve.md instead.
 """
 
 import argparse

@@ -1,4 +1,4 @@
-"""Tables as the README has them: Markdown between two comments with the table's name."""
+"""Tables as docs/figures.md has them: Markdown between two comments with the table's name."""
 
 from collections.abc import Iterable, Sequence
 
@@ -12,7 +12,7 @@ END = "<!-- end of table -->"
 
 
 def print_table(name: str, heads: Sequence[str], rows: Iterable[Sequence[str]]) -> None:
-    """Print a table, row by row as they come; `benchmarks/readme.py` puts it in the README's place of that name."""
+    """Print a table, row by row as they come; `benchmarks/put_tables.py` puts it in its place of that name."""
     print(f"{begin(name)}\n{_row(heads)}\n|{'---|' * len(heads)}")
     for row in rows:
         print(_row(row), flush=True)

@@ -8,6 +8,7 @@ import re
 import sys
 from collections.abc import Iterator
 from dataclasses import dataclass
+from importlib.util import find_spec
 from pathlib import Path
 from types import ModuleType
 
@@ -27,6 +28,8 @@ PLUGINS = (
 
 MINIMUM_LLVM = 19
 """Dr.Jit 1.5 calls LLVM 14 and older missing, and aborts the process in code generation with 15 and 16."""
+
+NOT_INSTALLED = "Mitsuba is not installed: pip install mitsuba (there is none for macOS on Intel)"
 
 _FOLDERS = ("/usr/lib", "/usr/lib64", "/usr/local/lib", "/usr/local/opt", "/opt/homebrew/opt", "/opt/local/libexec")
 """Linux's, and what Homebrew (on Intel and on Apple's own processors) and MacPorts use."""
@@ -163,6 +166,8 @@ def set_variant(variant: str = "auto") -> str:
     """
     if variant not in (*VARIANTS, "auto"):
         raise BackendError(f"variant '{variant}' is not supported: expected one of {', '.join(VARIANTS)}, auto")
+    if find_spec("mitsuba") is None:
+        raise BackendError(NOT_INSTALLED)
     if variant == "auto":
         variant = _automatic_variant()
     if variant == "llvm_ad_rgb":

@@ -1,5 +1,6 @@
 """A picture of a comparison: both pictures, their difference and the FLIP map, side by side and labelled."""
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -46,18 +47,18 @@ def draw_figure(report: Report, file: Path, amplification: float, ending: str | 
         np.float32
     )
     difference[np.isnan(difference).any(axis=2)] = NOT_FINITE
-    sheet = side_by_side(
-        (
-            Panel(f"reference: {shown_name(pictures.reference)}", pictures.reference_pixels),
-            Panel(f"candidate: {shown_name(pictures.test)}", pictures.test_pixels),
-            Panel(f"difference x {amplification:g}", difference),
-            Panel(f"FLIP, mean {report.flip_mean:.3g}", _magma(report.flip)),
-        )
-    )
+    panels = [
+        Panel(f"reference: {shown_name(pictures.reference)}", pictures.reference_pixels),
+        Panel(f"candidate: {shown_name(pictures.test)}", pictures.test_pixels),
+        Panel(f"difference x {amplification:g}", difference),
+    ]
+    if report.flip is not None:
+        panels.append(Panel(f"FLIP, mean {report.flip_mean:.3g}", _magma(report.flip)))
+    sheet = side_by_side(panels)
     write_image(file, sheet, sheet.shape[1], sheet.shape[0], ending)
 
 
-def side_by_side(panels: tuple[Panel, ...]) -> Pixels:
+def side_by_side(panels: Sequence[Panel]) -> Pixels:
     """One picture of several of the same size, each under its label."""
     height, width, _ = panels[0].pixels.shape
     scale = -(-SMALLEST_PANEL // width)

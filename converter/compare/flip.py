@@ -1,9 +1,16 @@
 """FLIP: how much a viewer who flips between two pictures sees change (Andersson et al., HPG 2020)."""
 
+from importlib.util import find_spec
+
 import numpy as np
 from numpy.typing import NDArray
 
 from converter.compare.metrics import Pixels, check_sizes
+
+
+def has_flip() -> bool:
+    """Whether FLIP's package is installed: there is none for some platforms."""
+    return find_spec("flip_evaluator") is not None
 
 
 def flip_map(reference: Pixels, test: Pixels) -> NDArray[np.float32]:

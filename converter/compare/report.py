@@ -10,7 +10,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from converter.compare.classes import Explanation
-from converter.compare.flip import flip_map
+from converter.compare.flip import flip_map, has_flip
 from converter.compare.metrics import Difference, Pixels, clamped, compare_pixels, count_shifted
 from converter.scene.model import Color
 
@@ -49,7 +49,7 @@ class Report:
         difference: between them as they are.
         clamped: between them as image files show them, clamped to 0..1.
         shifted: pixels that disagree, but may be the reference's, shifted by less than a pixel: at edges.
-        flip: FLIP error of each pixel.
+        flip: FLIP error of each pixel; None where its package is not installed.
         limit_percent: share of disagreeing pixels up to which they agree.
         explanation: why pixels disagree, where it was looked for.
 
@@ -59,7 +59,7 @@ class Report:
     difference: Difference
     clamped: Difference
     shifted: int
-    flip: NDArray[np.float32]
+    flip: NDArray[np.float32] | None
     limit_percent: float
     explanation: Explanation | None = None
 
@@ -69,9 +69,9 @@ class Report:
         return self.difference.disagreeing_percent <= self.limit_percent
 
     @property
-    def flip_mean(self) -> float:
+    def flip_mean(self) -> float | None:
         """Mean FLIP error."""
-        return float(self.flip.mean(dtype=np.float64))
+        return None if self.flip is None else float(self.flip.mean(dtype=np.float64))
 
 
 def make_report(pictures: Pictures, limit_percent: float) -> Report:
@@ -87,7 +87,7 @@ def make_report(pictures: Pictures, limit_percent: float) -> Report:
         difference=compare_pixels(reference, test),
         clamped=compare_pixels(clamped(reference), clamped(test)),
         shifted=count_shifted(reference, test),
-        flip=flip_map(reference, test),
+        flip=flip_map(reference, test) if has_flip() else None,
         limit_percent=limit_percent,
     )
 
@@ -113,7 +113,8 @@ def difference_rows(report: Report) -> list[tuple[str, str]]:
     rows += _largest_rows("largest difference", report, found)
     if found.disagreeing and report.clamped.largest != found.largest:
         rows += _largest_rows("  clamped to 0..1", report, report.clamped)
-    rows.append(("FLIP, mean", f"{report.flip_mean:.3g}"))
+    told = "not measured: pip install flip-evaluator" if report.flip_mean is None else f"{report.flip_mean:.3g}"
+    rows.append(("FLIP, mean", told))
     return rows
 
 

@@ -106,8 +106,9 @@ def _write_other(path: Path, values: memoryview, width: int, height: int) -> Non
         format_, data = oiio.UINT8, memoryview(quantize(values))
     # Room is taken first: OpenImageIO does not notice a full disk in every format, and its WebP then never returns.
     with path.open("xb") as file:
-        os.posix_fallocate(file.fileno(), 0, data.nbytes + 65536)
-        file.truncate(0)
+        if hasattr(os, "posix_fallocate"):  # macOS has none
+            os.posix_fallocate(file.fileno(), 0, data.nbytes + 65536)
+            file.truncate(0)
     output = oiio.ImageOutput.create(_utf8(path))
     if output is None:
         raise OSError(oiio.geterror())

@@ -193,10 +193,10 @@ def _native_missing(method: Method) -> str | None:
 def _mitsuba_missing(method: Method) -> str | None:
     from importlib.util import find_spec
 
-    if find_spec("mitsuba") is None:
-        return "Mitsuba is not installed: pip install mitsuba"
-    from mitsuba_plugins.backend import MINIMUM_LLVM, find_llvm, has_cuda, llvm_complaint
+    from mitsuba_plugins.backend import MINIMUM_LLVM, NOT_INSTALLED, find_llvm, has_cuda, llvm_complaint
 
+    if find_spec("mitsuba") is None:
+        return NOT_INSTALLED
     if method.options.get("variant") == "cuda_ad_rgb":
         return None if has_cuda() else "no CUDA device answers on this machine"
     if has_cuda():

@@ -1,6 +1,5 @@
 """Mitsuba 3 with our plugins, seen as one of the renderers."""
 
-import os
 import time
 from collections.abc import Iterator, Sequence
 from contextlib import contextmanager
@@ -18,6 +17,7 @@ from converter.renderers.base import (
     part_of,
     share_of_first,
 )
+from converter.renderers.native import available_cores
 from converter.renderers.records import PixelRecord
 from converter.scene.model import Scene
 from converter.scene.needs import scene_needs
@@ -277,7 +277,7 @@ def _threads(count: int) -> Iterator[None]:
     import drjit as dr
 
     before = dr.thread_count()
-    dr.set_thread_count(count or len(os.sched_getaffinity(0)))
+    dr.set_thread_count(count or available_cores())
     try:
         yield
     finally:

@@ -1,4 +1,4 @@
-"""The README's tables are those that the benchmarks print."""
+"""The tables of docs/figures.md are those that the benchmarks print."""
 
 import re
 import sys
@@ -9,15 +9,15 @@ import pytest
 ROOT = Path(__file__).parent.parent
 sys.path.insert(0, str(ROOT / "benchmarks"))
 
-import readme  # noqa: E402
+import put_tables  # noqa: E402
 from tables import print_table  # noqa: E402
 
 
-def test_every_table_that_is_printed_has_its_place_in_the_readme() -> None:
+def test_every_table_that_is_printed_has_its_place_in_the_page() -> None:
     programs = "".join(file.read_text(encoding="utf-8") for file in (ROOT / "benchmarks").glob("*.py"))
     printed = set(re.findall(r'print_table\("(\w+)"', programs))
     assert printed
-    assert printed == set(readme.tables((ROOT / "README.md").read_text(encoding="utf-8")))
+    assert printed == set(put_tables.tables((ROOT / "docs" / "figures.md").read_text(encoding="utf-8")))
 
 
 def test_a_table_takes_its_place_and_nothing_else(capsys: pytest.CaptureFixture[str]) -> None:
@@ -25,10 +25,10 @@ def test_a_table_takes_its_place_and_nothing_else(capsys: pytest.CaptureFixture[
     print_table("one", ["", "a"], [["x", "1"], ["y", ""]])
     print_table("other", ["b"], [["2"]])
     printed = capsys.readouterr().out + "<!-- table: broken -->\n| never ended"
-    found = readme.tables(printed)
+    found = put_tables.tables(printed)
     assert set(found) == {"one", "other"}
     assert found["one"].splitlines()[1:-1] == ["| | a |", "|---|---|", "| x | 1 |", "| y | |"]
     text = "A\n<!-- table: other -->\nold\n<!-- end of table -->\nB\n"
-    assert readme.replaced(text, "other", found["other"]) == f"A\n{found['other']}\nB\n"
+    assert put_tables.replaced(text, "other", found["other"]) == f"A\n{found['other']}\nB\n"
     with pytest.raises(ValueError):
-        readme.replaced(text, "one", found["one"])
+        put_tables.replaced(text, "one", found["one"])

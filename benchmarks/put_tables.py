@@ -1,7 +1,7 @@
-"""Puts tables that the benchmarks have printed into the README, each between the comments with its name.
+"""Puts tables that the benchmarks have printed into docs/figures.md, each between the comments with its name.
 
 make figures | tee out/figures.txt
-python benchmarks/readme.py out/figures.txt
+python benchmarks/put_tables.py out/figures.txt
 """
 
 import sys
@@ -9,19 +9,19 @@ from pathlib import Path
 
 from tables import END, begin
 
-README = Path(__file__).resolve().parent.parent / "README.md"
+FIGURES = Path(__file__).resolve().parent.parent / "docs" / "figures.md"
 
 
 def main() -> None:
-    """Replace the tables of the README that the files on the command line have; status 1 if it has none of a name."""
-    text = README.read_text(encoding="utf-8")
+    """Replace the tables of the page that the files on the command line have; status 1 if it has none of a name."""
+    text = FIGURES.read_text(encoding="utf-8")
     for file in sys.argv[1:]:
         for name, table in tables(Path(file).read_text(encoding="utf-8")).items():
             try:
                 text = replaced(text, name, table)
             except ValueError:
-                sys.exit(f"{README.name} has no place for the table {name!r} of {file}")
-    README.write_text(text, encoding="utf-8")
+                sys.exit(f"{FIGURES.name} has no place for the table {name!r} of {file}")
+    FIGURES.write_text(text, encoding="utf-8")
 
 
 def tables(printed: str) -> dict[str, str]:
