@@ -305,7 +305,8 @@ void pack(Mask<Real> named, const Lanes& lanes, void* to) {
     auto* next = static_cast<char*>(to);
     for (int i = 0; i < register_count<Real>; ++i) {
         Register<Real>::pack(named.value[i], lanes.value[i], next);
-        next += sizeof(lanes.value[i]) / Register<Real>::lanes * std::popcount(Register<Real>::bits(named.value[i]));
+        const auto size = static_cast<int>(sizeof(lanes.value[i])) / static_cast<int>(Register<Real>::lanes);
+        next += size * std::popcount(Register<Real>::bits(named.value[i]));
     }
 }
 
