@@ -91,13 +91,16 @@ def cluster(workers: int | None, scheduler: str | None, quiet: bool) -> Iterator
 
 def _started(make: Callable[..., Any], **options: Any) -> Any:
     """A cluster whose processes leave Ctrl-C to this one, which ends them."""
-    if threading.current_thread() is not threading.main_thread():
-        return make(**options)
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        return make(**options)
-    finally:
-        signal.signal(signal.SIGINT, before)
+    from dask import config
+
+    with config.set({"distributed.worker.profile.enabled": False}):  # it looks at every thread 100 times a second
+        if threading.current_thread() is not threading.main_thread():
+            return make(**options)
+        before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+        try:
+            return make(**options)
+        finally:
+            signal.signal(signal.SIGINT, before)
 
 
 def _dashboard(client: Any) -> str:
