@@ -209,7 +209,10 @@ def test_shapes_are_displaced_as_points_are():
         ),
         ('[tracks."camera.fovy"]\nkey = 1', "s.toml:2: camera.fovy has no 'key' (did you mean 'keys'?)"),
         ('[tracks."camera.fovy"]\nkeys = [[0, 4], [1, 5]]\nloop = true', "s.toml:2: camera.fovy, key 2: a loop ends"),
-        ('[tracks."ball.sphere.radius"]\nkeys = [[0, 1], [1, -1]]', "s.toml: frame 12 would be no scene: "),
+        (
+            '[tracks."ball.sphere.radius"]\nkeys = [[0, 1], [1, -1]]',
+            "s.toml: frame 12 would be no scene: the radius must be above 0, found '0'\n",
+        ),
     ],
 )
 def test_what_is_wrong_is_told_with_its_line(film, whitted, tmp_path, keys, message):

@@ -34,6 +34,15 @@ PATIENCE = 20.0
 """Seconds to wait for a scheduler that does not answer."""
 
 
+_CALM = {
+    "distributed.worker.profile.enabled": False,
+    "distributed.admin.tick.interval": "500 ms",
+    "distributed.admin.tick.limit": "60 s",
+    "distributed.admin.system-monitor.interval": "5 s",
+}
+"""Dask looks at its processes less often than it does else, a hundred times a second: they are few, and have work."""
+
+
 class ClusterError(Exception):
     """Others cannot draw: there is no Dask, no scheduler, or workers die."""
 
@@ -91,13 +100,16 @@ def cluster(workers: int | None, scheduler: str | None, quiet: bool) -> Iterator
 
 def _started(make: Callable[..., Any], **options: Any) -> Any:
     """A cluster whose processes leave Ctrl-C to this one, which ends them."""
-    if threading.current_thread() is not threading.main_thread():
-        return make(**options)
-    before = signal.signal(signal.SIGINT, signal.SIG_IGN)
-    try:
-        return make(**options)
-    finally:
-        signal.signal(signal.SIGINT, before)
+    from dask import config
+
+    with config.set(_CALM):
+        if threading.current_thread() is not threading.main_thread():
+            return make(**options)
+        before = signal.signal(signal.SIGINT, signal.SIG_IGN)
+        try:
+            return make(**options)
+        finally:
+            signal.signal(signal.SIGINT, before)
 
 
 def _dashboard(client: Any) -> str:

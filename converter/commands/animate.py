@@ -27,9 +27,10 @@ def parser() -> Parser:
     result = Parser(
         "whitted animate",
         "SCENE FILM [WIDTH HEIGHT] [options]",
-        "Draws a film of a scene whose numbers change with time. SCENE's keyframes are in a TOML file beside it: a\n"
-        "table for each number, or row of numbers, by its path, such as objects[3].sphere.radius, lights[1].color,\n"
-        "camera.eye, or NAME.sphere.center where a comment at an entry has its name.",
+        "Draws a film of a scene whose numbers change with time. The keyframes are in a\n"
+        "TOML file beside it: a table for each number, or row of numbers, by its path,\n"
+        "such as camera.eye, lights[1].color, objects[3].sphere.radius, or, where a\n"
+        "comment at an entry has its name, NAME.sphere.center.",
         "whitted animate scenes/films/orbit.in orbit.mp4 --frames 96\n"
         "  whitted animate orbit.in 'frames/{frame:04}.png' --keys fast.toml --workers 4",
     )

@@ -125,7 +125,7 @@ class Filming:
             for i, found in results:
                 k, _, source = wanted[i]
                 if isinstance(found, SceneError):
-                    raise FilmError(f"{self.keys}: frame {k} would be no scene: {found}")
+                    raise FilmError(f"{self.keys}: frame {k} would be no scene: {found.problems[0].message}")
                 if isinstance(found, Exception):
                     raise found
                 manifests[pictures[k].parent].write(pictures[k], source, found.data)
