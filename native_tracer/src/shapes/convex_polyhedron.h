@@ -71,7 +71,8 @@ class ConvexPolyhedron {
     // leaves one. Planes may be few and close no volume: either bound may stay infinite. Haines, "Fast Ray-Convex
     // Polyhedron Intersection", Graphics Gems II, 1991. Out of line, so that the loop has all registers to itself.
     template <bool which_primitive>
-    [[gnu::noinline]] bool intersect(const Rays<Real>& rays, Crossing<Real>& crossing, Mask<Real>& close) const {
+    [[gnu::noinline]] bool intersect(const Rays<Real>& rays, const L&, Crossing<Real>& crossing,
+                                     Mask<Real>& close) const {
         const L zero = Real(0);
         const L infinity = std::numeric_limits<Real>::infinity();
         const Mask<Real> starts_here = rays.object == Indices<Real>(object_);

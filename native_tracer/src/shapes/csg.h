@@ -52,6 +52,7 @@ class Csg {
 
     [[gnu::noinline]] Csg(const CsgDescription& csg, int object, int first_primitive)
         : plan_(plan_csg(csg, std::numeric_limits<Real>::digits)),
+          space_(plan_.tree, plan_.growth, plan_.reach),
           pieces_(plan_.first_piece.back()),
           object_(object),
           first_primitive_(first_primitive) {
@@ -62,8 +63,7 @@ class Csg {
         }
         find_ball(csg);
         for (const BvhNode& node : plan_.tree.nodes) {
-            nodes_.push_back({vector_of<Real>(node.box.low), vector_of<Real>(node.box.high),
-                              static_cast<int>(node.children), static_cast<int>(node.first),
+            nodes_.push_back({space_.box(node.box), static_cast<int>(node.children), static_cast<int>(node.first),
                               static_cast<int>(node.first + node.count)});
         }
     }
@@ -77,12 +77,13 @@ class Csg {
     }
 
     template <bool which_primitive>
-    [[gnu::always_inline]] bool intersect(const Rays<Real>& rays, Crossing<Real>& crossing, Mask<Real>&) const {
-        return intersect(rays, crossing);
+    [[gnu::always_inline]] bool intersect(const Rays<Real>& rays, const L& limit, Crossing<Real>& crossing,
+                                          Mask<Real>&) const {
+        return intersect(rays, limit, crossing);
     }
 
     [[gnu::noinline]] bool intersect_by_rules(const Rays<Real>& rays, Crossing<Real>& crossing) const {
-        return intersect(rays, crossing);
+        return intersect(rays, L(std::numeric_limits<Real>::infinity()), crossing);
     }
 
     int primitive_met(const Rays<Real>&, int, int primitive, Real, bool) const { return primitive; }
@@ -149,7 +150,7 @@ class Csg {
     };
 
     struct Node {
-        Vector<Real> low, high;
+        CoarseBox<Real> box;
         int children;  // the first of two neighbours; 0: it holds the leaves of the tree's order from first to end
         int first, end;
     };
@@ -186,7 +187,7 @@ class Csg {
     }
 
     // The leaves that some ray may meet, a bit each.
-    std::uint64_t leaves_met(const Rays<Real>& rays) const {
+    std::uint64_t leaves_met(const Rays<Real>& rays, const L& limit) const {
         std::uint64_t met = 0;
         for (const int leaf : plan_.apart) {
             met |= std::uint64_t(1) << leaf;
@@ -194,15 +195,15 @@ class Csg {
         if (nodes_.empty()) {
             return met;
         }
-        const BoxTest<Real> test(rays, static_cast<Real>(plan_.growth), static_cast<Real>(plan_.reach));
-        const L infinity = std::numeric_limits<Real>::max();
+        const BoxTest<Real> test(rays, space_);
+        const Coarse<Real> bound = test.bound(limit);
         int waiting[most_csg_leaves];
         int depth = 0;
         waiting[depth++] = 0;
         while (depth > 0) {
             const Node& node = nodes_[static_cast<std::size_t>(waiting[--depth])];
-            L since;
-            if (!any(test(node.low, node.high, infinity, since))) {
+            Coarse<Real> since;
+            if (!test(node.box, bound, since)) {
                 continue;
             }
             if (node.children != 0) {
@@ -275,9 +276,10 @@ class Csg {
         return start;
     }
 
-    void pass_leaves(const Rays<Real>& rays, const Start<Real>& start, Passages& passages) const {
-        const std::uint64_t met = reduce(leaves_met(rays), passages);
+    void pass_leaves(const Rays<Real>& rays, const L& limit, const Start<Real>& start, Passages& passages) const {
+        const std::uint64_t met = reduce(leaves_met(rays, limit), passages);
         const L infinity = std::numeric_limits<Real>::infinity();
+        const Mask<Real> wanted = limit >= L(Real(0));
         passages.count = 0;
         for (std::size_t i = 0; i < leaves_.size(); ++i) {
             passages.place[i] = -1;
@@ -289,7 +291,7 @@ class Csg {
             const L between = lists_.visit(leaf.shape, [&](const auto& shape) {
                 return shape.pass(rays, start, plan_.sides.data() + leaf.first_piece, passage);
             });
-            const Mask<Real> meets = ~passage.misses;
+            const Mask<Real> meets = ~passage.misses & wanted;
             if (start.any) {
                 // The other end of what a ray starts on is ahead, however near.
                 const Mask<Real> own = start.here &
@@ -298,7 +300,7 @@ class Csg {
                 const L ahead = rays.t_min * L(1 + 4 * std::numeric_limits<Real>::epsilon());
                 passage.far = select(own, max(passage.far, ahead), passage.far);
             }
-            if (!any(meets) && !any(passage.inverted)) {
+            if (!any(meets) && !any(passage.inverted & wanted)) {
                 continue;
             }
             passages.place[i] = passages.count;
@@ -337,10 +339,10 @@ class Csg {
     }
 
     // Out of line, for others' sake: it is long.
-    [[gnu::noinline]] bool intersect(const Rays<Real>& rays, Crossing<Real>& crossing) const {
+    [[gnu::noinline]] bool intersect(const Rays<Real>& rays, const L& limit, Crossing<Real>& crossing) const {
         const Start<Real> start = start_of(rays);
         Passages passages;
-        pass_leaves(rays, start, passages);
+        pass_leaves(rays, limit, start, passages);
         if (passages.count == 0) {
             return false;
         }
@@ -348,7 +350,9 @@ class Csg {
         L at = rays.t_min;
         crossing.t = infinity;
         crossing.inside = value_behind(passages, at);
-        Mask<Real> open = ~Mask<Real>::none();
+        // Beyond it, but for what may tie with it, nothing is asked.
+        const L last = limit + L(most_blur<Real>) * (limit + rays.reach);
+        Mask<Real> open = limit >= L(Real(0));
         for (;;) {
             L next = infinity;
             for (int i = 0; i < passages.count; ++i) {
@@ -356,7 +360,7 @@ class Csg {
                 next = min(select(ends.near > at, ends.near, infinity), next);
                 next = min(select(ends.far > at, ends.far, infinity), next);
             }
-            open &= next < infinity;
+            open &= (next < infinity) & ~(next > last);  // it may be no number
             if (!any(open)) {
                 break;
             }
@@ -532,6 +536,7 @@ class Csg {
     }
 
     CsgPlan plan_;
+    BoxSpace<Real> space_;
     Leaves lists_;
     std::vector<Leaf> leaves_;
     std::vector<Node> nodes_;  // the plan's tree

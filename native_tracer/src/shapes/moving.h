@@ -68,9 +68,11 @@ class Moving {
     }
 
     template <bool which_primitive>
-    [[gnu::noinline]] bool intersect(const Rays<Real>& rays, Crossing<Real>& crossing, Mask<Real>& close) const {
-        return bodies_.visit(
-            body_, [&](const auto& body) { return body.template intersect<which_primitive>(rays, crossing, close); });
+    [[gnu::noinline]] bool intersect(const Rays<Real>& rays, const L& limit, Crossing<Real>& crossing,
+                                     Mask<Real>& close) const {
+        return bodies_.visit(body_, [&](const auto& body) {
+            return body.template intersect<which_primitive>(rays, limit, crossing, close);
+        });
     }
     [[gnu::noinline]] bool intersect_by_rules(const Rays<Real>& rays, Crossing<Real>& crossing) const {
         return bodies_.visit(body_, [&](const auto& body) { return body.intersect_by_rules(rays, crossing); });

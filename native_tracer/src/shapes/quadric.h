@@ -51,7 +51,8 @@ class Quadric {
     }
 
     template <bool which_primitive>
-    [[gnu::always_inline]] bool intersect(const Rays<Real>& rays, Crossing<Real>& crossing, Mask<Real>&) const {
+    [[gnu::always_inline]] bool intersect(const Rays<Real>& rays, const L&, Crossing<Real>& crossing,
+                                          Mask<Real>&) const {
         return intersect(rays, crossing);
     }
 

@@ -50,12 +50,13 @@ class Sphere {
     // adds, and (g.g - r^2) / q. Haines, Guenther and Akenine-Moller, "Precision Improvements for Ray/Sphere
     // Intersection", Ray Tracing Gems, 2019, ch. 7.
     template <bool which_primitive>
-    [[gnu::always_inline]] bool intersect(const Rays<Real>& rays, Crossing<Real>& crossing, Mask<Real>&) const {
+    [[gnu::always_inline]] bool intersect(const Rays<Real>& rays, const L&, Crossing<Real>& crossing,
+                                          Mask<Real>&) const {
         const Vector<L> g = Vector<L>(center_) - rays.origin;
         const L closest = dot(g, rays.direction);  // where the ray passes the centre
         const Vector<L> across = g - closest * rays.direction;
         const L across2 = dot(across, across);
-        const Mask<Real> near_enough = across2 <= L(reach2_);
+        const Mask<Real> near_enough = (across2 <= L(reach2_));
         if (!any(near_enough)) {
             return false;
         }
@@ -85,7 +86,7 @@ class Sphere {
     // Rays that start on the sphere by the roundings of their origins only, and not by knowledge, do not meet it there.
     bool intersect_by_rules(const Rays<Real>& rays, Crossing<Real>& crossing) const {
         Mask<Real> unused = Mask<Real>::none();
-        if (!intersect<true>(rays, crossing, unused)) {
+        if (!intersect<true>(rays, rays.t_min, crossing, unused)) {
             return false;
         }
         const L infinity = std::numeric_limits<Real>::infinity();

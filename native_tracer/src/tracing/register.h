@@ -80,6 +80,7 @@ struct Register<float> {
     static Reals min(Reals a, Reals b) { return _mm512_maskz_min_ps(0xFFFF, a, b); }
     static Reals max(Reals a, Reals b) { return _mm512_maskz_max_ps(0xFFFF, a, b); }
     static Reals abs(Reals a) { return (Reals)((Integers)a & INT32_MAX); }
+    static Reals multiply_subtract(Reals a, Reals b, Reals c) { return _mm512_fmsub_ps(a, b, c); }
     static Reals sqrt(Reals a) { return _mm512_maskz_sqrt_ps(0xFFFF, a); }
     static Reals floor(Reals a) { return _mm512_maskz_roundscale_ps(0xFFFF, a, _MM_FROUND_FLOOR); }
 
@@ -158,6 +159,14 @@ struct Register : Vectors<Real> {
     static Reals min(Reals a, Reals b) { return a < b ? a : b; }
     static Reals max(Reals a, Reals b) { return a > b ? a : b; }
     static Reals abs(Reals a) { return (Reals)((Integers)a & std::numeric_limits<Integer>::max()); }
+    static Reals multiply_subtract(Reals a, Reals b, Reals c) {
+#if defined(__FMA__)
+        if constexpr (sizeof(Real) == 4) {
+            return _mm256_fmsub_ps(a, b, c);
+        }
+#endif
+        return a * b - c;
+    }
     static Reals sqrt(Reals a) {
 #if defined(__AVX2__)
         if constexpr (sizeof(Real) == 8) {
@@ -236,6 +245,7 @@ struct Register<long double> {
     static Reals min(Reals a, Reals b) { return a < b ? a : b; }
     static Reals max(Reals a, Reals b) { return a > b ? a : b; }
     static Reals abs(Reals a) { return std::abs(a); }
+    static Reals multiply_subtract(Reals a, Reals b, Reals c) { return a * b - c; }
     static Reals sqrt(Reals a) { return std::sqrt(a); }
     static Reals floor(Reals a) { return std::floor(a); }
 

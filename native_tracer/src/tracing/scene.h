@@ -282,15 +282,15 @@ struct Scene {
             if constexpr (ties == Ties::decided) {
                 crosses = shape.intersect_by_rules(resting, crossing);
             } else {
-                crosses = shape.template intersect<ties == Ties::found>(resting, crossing, close);
+                crosses = shape.template intersect<ties == Ties::found>(resting, limit, crossing, close);
             }
             return !crosses || visit(shape, crossing);
         };
         const auto cross_if_in_sight = [&](const auto& shape, const auto& sight)
                                            __attribute__((always_inline)) { return !may_hit(sight) || cross(shape); };
         if (view ? shapes.for_each(apart, *view, cross_if_in_sight) : shapes.for_each(apart, cross)) {
-            tree.for_each_leaf(rays, limit, [&](const TreeNode<Real>& leaf) __attribute__((always_inline)) {
-                return shapes.for_each(leaf.shapes, cross);
+            tree.for_each_leaf(rays, limit, [&](const typename Tree<Real>::Leaf& leaf) __attribute__((always_inline)) {
+                return shapes.for_each(leaf, cross);
             });
         }
     }
@@ -360,7 +360,8 @@ void Scene<Real>::add_shapes(const SceneDescription& description, const SearchPl
             for (std::size_t k = node.first; k < node.first + node.count; ++k) {
                 add(static_cast<int>(plan.tree.order[k]));
             }
-            last = tree[i].shapes = shapes.added_behind(last);
+            last = shapes.added_behind(last);
+            tree.put_leaf(i, last);
         }
     }
 }
