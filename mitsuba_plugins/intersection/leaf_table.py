@@ -30,9 +30,10 @@ class LeafTable:
         sheets = list(range(sum(len(surface.rows) for surface in surfaces)))
         for surface, row in zip(surfaces, first_rows, strict=True):
             first_leaf.append(len(kinds))
-            if not isinstance(surface.solid, SearchedCsg):
+            solid = surface.solid.deciding_ties()
+            if not isinstance(solid, SearchedCsg):
                 continue
-            for leaf, (_, shape) in zip(surface.solid.leaves, surface.shapes, strict=True):
+            for leaf, (_, shape) in zip(solid.leaves, surface.shapes, strict=True):
                 kinds.append(numbers[id(leaf.kind)])
                 firsts.append(row + leaf.first)
                 counts.append(len(leaf.sheets))
