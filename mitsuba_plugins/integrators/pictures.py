@@ -114,7 +114,7 @@ def signed_bands(
                 position = corner + dr.gather(mi.Point2d, offset, mi.UInt32(0))
                 number = samples.Sample(mi.UInt32(0), mi.UInt32(0))
                 ray = integrator.primary_ray(sensor, position, number)
-                color, too_deep, signature = integrator.trace(ray, number, True)
+                color, too_deep, signature, _ = integrator.trace(ray, number, True)
                 pace.recorded()
                 dr.eval(color, too_deep, signature)
                 dr.sync_thread()
@@ -229,10 +229,24 @@ def _launched(
     while done < end:
         more = min(end - done, pace.samples(count))
         with pace.launch(count * more):
-            color, too_deep = _add_samples(integrator, sensor, color, too_deep, pixel, tables, done, done + more)
+            samples_drawn = tables, done, done + more
+            before = mi.Color3d(color), mi.Bool(too_deep)
+            integrator.postpone_ties(True)
+            color, too_deep, undecided = _add_samples(integrator, sensor, color, too_deep, pixel, *samples_drawn)
             pace.recorded()
-            dr.eval(color, too_deep)
+            dr.eval(color, too_deep, undecided)
             dr.sync_thread()
+            integrator.postpone_ties(False)
+            if dr.any(undecided):
+                # A kernel of its own decides ties, for the few pixels that have some: its code would slow down all.
+                again = dr.compress(undecided)
+                drawn = dr.gather(mi.Color3d, before[0], again), dr.gather(mi.Bool, before[1], again)
+                decided = _add_samples(integrator, sensor, *drawn, dr.gather(mi.UInt32, pixel, again), *samples_drawn)
+                dr.scatter(color, decided[0], again)
+                if integrator.depth_limited:
+                    dr.scatter(too_deep, decided[1], again)
+                dr.eval(color, too_deep)
+                dr.sync_thread()
         done += more
         told(done)
     return color, too_deep
@@ -241,8 +255,11 @@ def _launched(
 @dr.syntax
 def _add_samples(
     integrator: Any, sensor: Any, color: Any, too_deep: Any, pixel: Any, tables: Any, sample: Any, end: Any
-) -> tuple[Any, Any]:
-    """What `trace` finds for pixels, by their numbers (UInt32), with some more samples added."""
+) -> tuple[Any, Any, Any]:
+    """What `trace` finds for pixels, by their numbers (UInt32), with some more samples added, and which of them are
+    undecided.
+    """
+    undecided = dr.zeros(mi.Bool, dr.width(color))
     width = dr.width(color)
     corner = _corners(sensor.film(), pixel)
     key = integrator.pixel_key(corner)
@@ -251,9 +268,10 @@ def _add_samples(
         # One sample needs no loop, which takes twice as long to record.
         position = corner + dr.gather(mi.Point2d, offsets, mi.UInt32(0))
         number = integrator.name_sample(key, mi.UInt32(0))
-        more, deep, _ = integrator.trace(integrator.primary_ray(sensor, position, number), number, True)
+        more, deep, _, unknown = integrator.trace(integrator.primary_ray(sensor, position, number), number, True)
         color += more
         too_deep |= deep
+        undecided |= unknown
     else:
         # Opaque, so that all numbers of samples share one kernel.
         sample, end = dr.opaque(mi.UInt32, sample, width), dr.opaque(mi.UInt32, end)
@@ -262,11 +280,12 @@ def _add_samples(
             number = integrator.name_sample(
                 key, dr.gather(mi.UInt32, numbers, sample) if integrator.sampled else mi.UInt32(0)
             )
-            more, deep, _ = integrator.trace(integrator.primary_ray(sensor, position, number), number, True)
+            more, deep, _, unknown = integrator.trace(integrator.primary_ray(sensor, position, number), number, True)
             color += more
             too_deep |= deep
+            undecided |= unknown
             sample += 1
-    return color, too_deep
+    return color, too_deep, undecided
 
 
 def sample_offsets(spp: int) -> list[tuple[float, float]]:
