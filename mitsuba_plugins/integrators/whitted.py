@@ -223,7 +223,9 @@ class Whitted(mi.SamplingIntegrator):
         else:
             self._tracer = MitsubaSurfaces(scene, self.surfaces, primitives, self.intersections)
         try:
-            yield
+            # Loops are recorded once, and not twice at each level: kernels are no slower for it.
+            with dr.scoped_set_flag(dr.JitFlag.OptimizeLoops, False):
+                yield
         finally:
             self._tracer = None
 
