@@ -47,6 +47,7 @@ def bands(
     """
     cells = [cell for cells in passes(spp or sensor.sampler().sample_count()) for cell in cells]
     with integrator.prepared(scene, sensor), dr.suspend_grad():
+        integrator.postpone_ties(True)
         pace = Pace(integrator.branching, integrator.max_depth[0])
         integrator.pixels_too_deep = 0
         for first, color, too_deep in _stage(
@@ -72,6 +73,7 @@ def bands_by_passes(
     cells = [cell for cells in all_passes for cell in cells]
     width, height = sensor.film().crop_size()
     with integrator.prepared(scene, sensor), dr.suspend_grad():
+        integrator.postpone_ties(True)
         pace = Pace(integrator.branching, integrator.max_depth[0])
         tables = _tables(cells, len(cells))
         integrator.sums = start or PassSums(0, dr.zeros(mi.Color3d, width * height), dr.zeros(mi.Bool, width * height))
@@ -138,6 +140,7 @@ def chosen_pixels(
 
     """
     with integrator.prepared(scene, sensor), dr.suspend_grad():
+        integrator.postpone_ties(True)
         pace = Pace(integrator.branching, integrator.max_depth[0])
         tables = _tables(cells, sensor.sampler().sample_count())
         integrator.pixels_too_deep = 0
@@ -229,19 +232,19 @@ def _launched(
     while done < end:
         more = min(end - done, pace.samples(count))
         with pace.launch(count * more):
-            samples_drawn = tables, done, done + more
             before = mi.Color3d(color), mi.Bool(too_deep)
-            integrator.postpone_ties(True)
-            color, too_deep, undecided = _add_samples(integrator, sensor, color, too_deep, pixel, *samples_drawn)
+            some = tables, done, done + more
+            color, too_deep, undecided = _add_samples(integrator, sensor, color, too_deep, pixel, *some)
             pace.recorded()
             dr.eval(color, too_deep, undecided)
             dr.sync_thread()
-            integrator.postpone_ties(False)
-            if dr.any(undecided):
-                # A kernel of its own decides ties, for the few pixels that have some: its code would slow down all.
+            if integrator.postpones_ties and dr.any(undecided):
+                # Once more, for the pixels that have some. Where there are ties there may be others: from now on they
+                # are decided at once, so that it is this launch alone that is recorded twice.
+                integrator.postpone_ties(False)
                 again = dr.compress(undecided)
                 drawn = dr.gather(mi.Color3d, before[0], again), dr.gather(mi.Bool, before[1], again)
-                decided = _add_samples(integrator, sensor, *drawn, dr.gather(mi.UInt32, pixel, again), *samples_drawn)
+                decided = _add_samples(integrator, sensor, *drawn, dr.gather(mi.UInt32, pixel, again), *some)
                 dr.scatter(color, decided[0], again)
                 if integrator.depth_limited:
                     dr.scatter(too_deep, decided[1], again)

@@ -50,7 +50,11 @@ from mitsuba_plugins.intersection.rounding import (
 INTERSECTIONS = ("analytic", "bvh", "mesh", "offset", "ulp")
 """Ways to find what a ray hits."""
 ANALYTIC_LIMIT = 32
-"""Spheres and planes, together, up to which `intersections` "auto" is "analytic": its kernels grow with them."""
+"""Rows of numbers (a sphere and a plane have one, a quadric four) up to which "auto" is "analytic", ..."""
+ANALYTIC_MOST = 96
+"""... or this, as its kernels grow with them, if there are few bounded objects: only these does a tree pass by."""
+ANALYTIC_OBJECTS = 12
+"""That are few."""
 
 
 class Whitted(mi.SamplingIntegrator):
@@ -119,7 +123,8 @@ class Whitted(mi.SamplingIntegrator):
        - ``analytic``: intersect spheres and half-spaces in the kernel, each with code of its own; ``bvh``: through a
          tree of boxes; ``mesh``: let Embree or OptiX find which of the scene's shapes is hit and compute where from
          the exact surface; ``offset``, ``ulp``: believe Embree or OptiX, and start rays off the surface by Mitsuba's
-         own offset or Waechter and Binder's; ``auto``: ``analytic`` for small scenes, else ``bvh`` (Default: auto)
+         own offset or Waechter and Binder's; ``auto``: ``analytic`` for small scenes and few bounded objects, else ``bvh``
+         (Default: auto)
 
      * - precision
        - |string|
@@ -152,8 +157,7 @@ class Whitted(mi.SamplingIntegrator):
         if self.intersections not in (*INTERSECTIONS, "auto"):
             raise ValueError(f"whitted: intersections is one of {INTERSECTIONS} or auto, not '{self.intersections}'")
         if self.intersections == "auto" or (self.intersections == "bvh" and not self.surfaces):  # of nothing, no tree
-            size = sum(len(surface.rows) for surface in self.surfaces)
-            self.intersections = "analytic" if size <= ANALYTIC_LIMIT else "bvh"
+            self.intersections = "analytic" if _has_few(self.surfaces) else "bvh"
         self.moves = any(surface.moves for surface in self.surfaces)
         if self.moves and self.intersections not in ("analytic", "bvh"):
             raise ValueError(f"whitted: 'geometry' moves objects, and the shapes of '{self.intersections}' stand still")
@@ -229,8 +233,13 @@ class Whitted(mi.SamplingIntegrator):
         finally:
             self._tracer = None
 
+    @property
+    def postpones_ties(self):
+        """Whether `trace` tells which rays' trees come close to a tie, and leaves it undecided."""
+        return self._tracer.postpones_ties
+
     def postpone_ties(self, postpones):
-        """Whether `trace` only tells which rays' trees come close to a tie, or decides all."""
+        """Let `trace` do so, where it would decide ties: the code by which it does slows down the kernel."""
         self._tracer.postpones_ties = postpones and self._tracer.finds_ties and self.precision == "double"
 
     # ------------------------------------------------------------------ one ray
@@ -345,7 +354,7 @@ class Whitted(mi.SamplingIntegrator):
         active = active & lanes(width)
         too_deep = dr.zeros(mi.Bool, width) if self.depth_limited else False
         signature = dr.zeros(mi.UInt32, width) if self.signing else mi.UInt32(0)
-        postpones = self._tracer.postpones_ties
+        postpones = self.postpones_ties
         undecided = dr.zeros(mi.Bool, width) if postpones else False
         waiting = dr.zeros(mi.UInt32, width)
         stack = RayStack(self.types, self.stack_size if self.branching else 0, self.sampled)
@@ -547,6 +556,13 @@ def _to_disc(center, position, radius, square, error):
     is_disc = radius > 0
     way = center + (radius * x) * tangent + (radius * y) * bitangent
     return dr.select(is_disc, way, center), dr.select(is_disc, error + off, error)
+
+
+def _has_few(surfaces):
+    """Whether code for each surface is faster than a tree."""
+    size = sum(len(surface.rows) for surface in surfaces)
+    bounded = sum(surface.box is not None for surface in surfaces)
+    return size <= ANALYTIC_LIMIT or (size <= ANALYTIC_MOST and bounded <= ANALYTIC_OBJECTS)
 
 
 def _materials(props, surfaces):

@@ -21,6 +21,7 @@ class MitsubaSurfaces:
     """The shapes of a Mitsuba scene, taken at their word; meshes may stand for spheres."""
 
     finds_ties = False
+    postpones_ties = False
 
     def __init__(self, scene: Any, surfaces: list[Surface], primitives: Primitives, offset: str) -> None:
         self._scene = scene
