@@ -22,7 +22,7 @@ def tree():
     return BoxTree(real("double"), [None, *boxes])
 
 
-def candidates(tree, origins, directions, ties, distance=np.inf, skipped=0xFFFFFFFF):
+def candidates(tree, origins, directions, distance=np.inf, skipped=0xFFFFFFFF):
     """For each ray the objects that it may meet, in the order in which they are found."""
     import drjit as dr
     import mitsuba as mi
@@ -32,7 +32,7 @@ def candidates(tree, origins, directions, ties, distance=np.inf, skipped=0xFFFFF
     o, d = (np.asarray(v, float).T for v in (origins, directions))
     ray = start_ray(real("double"), mi.Point3d(o), unit(mi.Vector3d(d)))
     width = dr.width(ray.d)
-    walk = tree.walk(ray, ties)
+    walk = tree.walk(ray)
     node, searching = mi.UInt32(walk.start), lanes(width)
     limit = tree.limit(dr.full(mi.Float64, distance, width))
     found = [[] for _ in range(width)]
@@ -53,22 +53,21 @@ def crossed(origin, direction, far=np.inf):
     return {0, *(np.nonzero((near <= beyond) & (beyond >= 0) & (near <= far))[0] + 1).tolist()}
 
 
-@pytest.mark.parametrize("ties", [False, True])
-def test_all_boxes_that_rays_cross_and_no_others(tree, ties):
+def test_all_boxes_that_rays_cross_and_no_others(tree):
     numbers = np.random.default_rng(1)
     origins = numbers.uniform(-3, 23, (200, 3))
     directions = numbers.normal(size=(200, 3))
     directions /= np.linalg.norm(directions, axis=1)[:, None]
     for far in (np.inf, 7.0):
-        for found, o, d in zip(candidates(tree, origins, directions, ties, far), origins, directions, strict=True):
+        for found, o, d in zip(candidates(tree, origins, directions, far), origins, directions, strict=True):
             assert len(found) == len(set(found))
             assert set(found) == crossed(o, d, far)
 
 
 def test_one_is_passed_over(tree):
     origin, direction = (0.5, 0.5, -1), (0, 0, 1)
-    (every,) = candidates(tree, [origin], [direction], False)
-    (rest,) = candidates(tree, [origin], [direction], False, skipped=every[2])
+    (every,) = candidates(tree, [origin], [direction])
+    (rest,) = candidates(tree, [origin], [direction], skipped=every[2])
     assert rest == [*every[:2], *every[3:]]
     assert len(every) == 11
 
@@ -78,7 +77,7 @@ def test_what_ties_is_sought_in_boxes_that_are_missed_by_a_little(tree, off):
     """Rays along sides of ten boxes, or beside them by rounding errors; not those that pass by farther away."""
     origins = [(1 + off, 0.5, -1), (-off, 0.5, -1), (0.5, 21, 1 + off), (19 + off, -1, 0)]
     directions = [(0, 0, 1), (0, 0, 1), (0, -1, 0), (0, 1, 0)]
-    for found in candidates(tree, origins, directions, True):
+    for found in candidates(tree, origins, directions):
         assert len(found) == 11
-    beside = candidates(tree, [(1.001, 0.5, -1)], [(0, 0, 1)], True)
+    beside = candidates(tree, [(1.001, 0.5, -1)], [(0, 0, 1)])
     assert beside == [[0]]

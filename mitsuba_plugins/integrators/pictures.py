@@ -47,6 +47,7 @@ def bands(
     """
     cells = [cell for cells in passes(spp or sensor.sampler().sample_count()) for cell in cells]
     with integrator.prepared(scene, sensor), dr.suspend_grad():
+        integrator.postpone_ties(True)
         pace = Pace(integrator.branching, integrator.max_depth[0])
         integrator.pixels_too_deep = 0
         for first, color, too_deep in _stage(
@@ -72,6 +73,7 @@ def bands_by_passes(
     cells = [cell for cells in all_passes for cell in cells]
     width, height = sensor.film().crop_size()
     with integrator.prepared(scene, sensor), dr.suspend_grad():
+        integrator.postpone_ties(True)
         pace = Pace(integrator.branching, integrator.max_depth[0])
         tables = _tables(cells, len(cells))
         integrator.sums = start or PassSums(0, dr.zeros(mi.Color3d, width * height), dr.zeros(mi.Bool, width * height))
@@ -115,7 +117,7 @@ def signed_bands(
                 position = corner + dr.gather(mi.Point2d, offset, mi.UInt32(0))
                 number = samples.Sample(mi.UInt32(0), mi.UInt32(0))
                 ray = integrator.primary_ray(sensor, position, number)
-                color, too_deep, signature = integrator.trace(ray, number, True)
+                color, too_deep, signature, _ = integrator.trace(ray, number, True)
                 pace.recorded()
                 dr.eval(color, too_deep, signature)
                 dr.sync_thread()
@@ -139,6 +141,7 @@ def chosen_pixels(
 
     """
     with integrator.prepared(scene, sensor), dr.suspend_grad():
+        integrator.postpone_ties(True)
         pace = Pace(integrator.branching, integrator.max_depth[0])
         tables = _tables(cells, sensor.sampler().sample_count())
         integrator.pixels_too_deep = 0
@@ -230,10 +233,24 @@ def _launched(
     while done < end:
         more = min(end - done, pace.samples(count))
         with pace.launch(count * more):
-            color, too_deep = _add_samples(integrator, sensor, color, too_deep, pixel, tables, done, done + more)
+            before = mi.Color3d(color), mi.Bool(too_deep)
+            some = tables, done, done + more
+            color, too_deep, undecided = _add_samples(integrator, sensor, color, too_deep, pixel, *some)
             pace.recorded()
-            dr.eval(color, too_deep)
+            dr.eval(color, too_deep, undecided)
             dr.sync_thread()
+            if integrator.postpones_ties and dr.any(undecided):
+                # Once more, for the pixels that have some. Where there are ties there may be others: from now on they
+                # are decided at once, so that it is this launch alone that is recorded twice.
+                integrator.postpone_ties(False)
+                again = dr.compress(undecided)
+                drawn = dr.gather(mi.Color3d, before[0], again), dr.gather(mi.Bool, before[1], again)
+                decided = _add_samples(integrator, sensor, *drawn, dr.gather(mi.UInt32, pixel, again), *some)
+                dr.scatter(color, decided[0], again)
+                if integrator.depth_limited:
+                    dr.scatter(too_deep, decided[1], again)
+                dr.eval(color, too_deep)
+                dr.sync_thread()
         done += more
         told(done)
     return color, too_deep
@@ -242,8 +259,11 @@ def _launched(
 @dr.syntax
 def _add_samples(
     integrator: Any, sensor: Any, color: Any, too_deep: Any, pixel: Any, tables: Any, sample: Any, end: Any
-) -> tuple[Any, Any]:
-    """What `trace` finds for pixels, by their numbers (UInt32), with some more samples added."""
+) -> tuple[Any, Any, Any]:
+    """What `trace` finds for pixels, by their numbers (UInt32), with some more samples added, and which of them are
+    undecided.
+    """
+    undecided = dr.zeros(mi.Bool, dr.width(color))
     width = dr.width(color)
     corner = _corners(sensor.film(), pixel)
     key = integrator.pixel_key(corner)
@@ -252,9 +272,10 @@ def _add_samples(
         # One sample needs no loop, which takes twice as long to record.
         position = corner + dr.gather(mi.Point2d, offsets, mi.UInt32(0))
         number = integrator.name_sample(key, mi.UInt32(0))
-        more, deep, _ = integrator.trace(integrator.primary_ray(sensor, position, number), number, True)
+        more, deep, _, unknown = integrator.trace(integrator.primary_ray(sensor, position, number), number, True)
         color += more
         too_deep |= deep
+        undecided |= unknown
     else:
         # Opaque, so that all numbers of samples share one kernel.
         sample, end = dr.opaque(mi.UInt32, sample, width), dr.opaque(mi.UInt32, end)
@@ -263,11 +284,12 @@ def _add_samples(
             number = integrator.name_sample(
                 key, dr.gather(mi.UInt32, numbers, sample) if integrator.sampled else mi.UInt32(0)
             )
-            more, deep, _ = integrator.trace(integrator.primary_ray(sensor, position, number), number, True)
+            more, deep, _, unknown = integrator.trace(integrator.primary_ray(sensor, position, number), number, True)
             color += more
             too_deep |= deep
+            undecided |= unknown
             sample += 1
-    return color, too_deep
+    return color, too_deep, undecided
 
 
 def sample_offsets(spp: int) -> list[tuple[float, float]]:

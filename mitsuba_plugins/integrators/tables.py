@@ -32,13 +32,16 @@ class Finish:
 
 @dataclass
 class Illumination:
-    """What a light adds at a hit: n . l, the attenuation, the object in its way or NOTHING, the two terms (Color3)."""
+    """What a light adds at a hit: n . l, the attenuation, the object in its way or NOTHING, the two terms (Color3), and
+    whether the shadow ray came close to a tie that nobody has decided.
+    """
 
     cosine: Any
     attenuation: Any
     blocker: Any
     diffuse: Any
     specular: Any
+    undecided: Any
 
 
 class Materials:

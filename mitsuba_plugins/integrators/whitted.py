@@ -50,7 +50,11 @@ from mitsuba_plugins.intersection.rounding import (
 INTERSECTIONS = ("analytic", "bvh", "mesh", "offset", "ulp")
 """Ways to find what a ray hits."""
 ANALYTIC_LIMIT = 32
-"""Spheres and planes, together, up to which `intersections` "auto" is "analytic": its kernels grow with them."""
+"""Rows of numbers (a sphere and a plane have one, a quadric four) up to which "auto" is "analytic", ..."""
+ANALYTIC_MOST = 96
+"""... or this, as its kernels grow with them, if there are few bounded objects: only these does a tree pass by."""
+ANALYTIC_OBJECTS = 12
+"""That are few."""
 
 
 class Whitted(mi.SamplingIntegrator):
@@ -119,7 +123,8 @@ class Whitted(mi.SamplingIntegrator):
        - ``analytic``: intersect spheres and half-spaces in the kernel, each with code of its own; ``bvh``: through a
          tree of boxes; ``mesh``: let Embree or OptiX find which of the scene's shapes is hit and compute where from
          the exact surface; ``offset``, ``ulp``: believe Embree or OptiX, and start rays off the surface by Mitsuba's
-         own offset or Waechter and Binder's; ``auto``: ``analytic`` for small scenes, else ``bvh`` (Default: auto)
+         own offset or Waechter and Binder's; ``auto``: ``analytic`` for small scenes and few bounded objects, else
+         ``bvh`` (Default: auto)
 
      * - precision
        - |string|
@@ -152,8 +157,7 @@ class Whitted(mi.SamplingIntegrator):
         if self.intersections not in (*INTERSECTIONS, "auto"):
             raise ValueError(f"whitted: intersections is one of {INTERSECTIONS} or auto, not '{self.intersections}'")
         if self.intersections == "auto" or (self.intersections == "bvh" and not self.surfaces):  # of nothing, no tree
-            size = sum(len(surface.rows) for surface in self.surfaces)
-            self.intersections = "analytic" if size <= ANALYTIC_LIMIT else "bvh"
+            self.intersections = "analytic" if _has_few(self.surfaces) else "bvh"
         self.moves = any(surface.moves for surface in self.surfaces)
         if self.moves and self.intersections not in ("analytic", "bvh"):
             raise ValueError(f"whitted: 'geometry' moves objects, and the shapes of '{self.intersections}' stand still")
@@ -224,9 +228,20 @@ class Whitted(mi.SamplingIntegrator):
         else:
             self._tracer = MitsubaSurfaces(scene, self.surfaces, primitives, self.intersections)
         try:
-            yield
+            # Loops are recorded once, and not twice at each level: kernels are no slower for it.
+            with dr.scoped_set_flag(dr.JitFlag.OptimizeLoops, False):
+                yield
         finally:
             self._tracer = None
+
+    @property
+    def postpones_ties(self):
+        """Whether `trace` tells which rays' trees come close to a tie, and leaves it undecided."""
+        return self._tracer.postpones_ties
+
+    def postpone_ties(self, postpones):
+        """Let `trace` do so, where it would decide ties: the code by which it does slows down the kernel."""
+        self._tracer.postpones_ties = postpones and self._tracer.finds_ties and self.precision == "double"
 
     # ------------------------------------------------------------------ one ray
 
@@ -272,7 +287,7 @@ class Whitted(mi.SamplingIntegrator):
             & apart
             & ~self._light_contacts.grazes(index, hit.primitive, active)
         )
-        blocker = self._tracer.blocker(hit, to_light, distance, error, index, facing)
+        blocker, undecided = self._tracer.blocker(hit, to_light, distance, error, index, facing)
         attenuation = a + distance * (b + distance * c)
         # Masked at the end: a light at the hit itself has no direction, and nothing times no number is no number.
         lit = facing & (blocker == NOTHING)
@@ -281,7 +296,7 @@ class Whitted(mi.SamplingIntegrator):
         specular = self.types.Color3(0)
         if self.highlights:
             specular = (finish.ks * self._highlight(ray, n, to_light, finish.alpha) * intensity) & lit
-        return Illumination(cosine, attenuation, blocker, diffuse, specular)
+        return Illumination(cosine, attenuation, blocker, diffuse, specular, undecided)
 
     def _highlight(self, ray: Ray, n, to_light, alpha):
         cosine = dr.dot(n, unit(to_light - ray.d)) if self._materials.blinn else dr.dot(reflect(ray.d, n), to_light)
@@ -325,8 +340,9 @@ class Whitted(mi.SamplingIntegrator):
     @dr.syntax
     def trace(self, ray: Ray, sample, active):
         """Radiance (Color3) along rays: the whole tree below each, in one kernel; if `depth_limited`, whether the limit
-        dropped a ray that the cut-off would have kept, else False; and if `signing`, the signature (UInt32), else 0.
-        Each is the primary ray of a `sample`.
+        dropped a ray that the cut-off would have kept, else False; if `signing`, the signature (UInt32), else 0; and,
+        if ties are postponed, whether a ray of the tree came close to one, else False. Each is the primary ray of a
+        `sample`.
 
         Where a surface sends on two rays, the heavier one waits on a stack in local memory.
         """
@@ -339,17 +355,21 @@ class Whitted(mi.SamplingIntegrator):
         active = active & lanes(width)
         too_deep = dr.zeros(mi.Bool, width) if self.depth_limited else False
         signature = dr.zeros(mi.UInt32, width) if self.signing else mi.UInt32(0)
+        postpones = self.postpones_ties
+        undecided = dr.zeros(mi.Bool, width) if postpones else False
         waiting = dr.zeros(mi.UInt32, width)
         stack = RayStack(self.types, self.stack_size if self.branching else 0, self.sampled)
         path = dr.full(mi.UInt32, samples.PRIMARY_PATH, width) if self.sampled else mi.UInt32(0)
         while active:
             hit = self.closest(ray, active)
             finish, color = self.material(ray, hit)
-            local, shadows = self.local_radiance(ray, hit, finish, color, sample, path)
+            local, shadows, unsure = self.local_radiance(ray, hit, finish, color, sample, path)
             if dr.hint(self.signing, mode="scalar"):
                 signature += dr.select(hit.valid & (weight >= self._least_weight), self._hit_word(ray, hit, path), 0)
                 lit_weight = weight * (finish.kd + finish.ks)
                 signature += dr.select(hit.valid & (lit_weight >= self._least_weight), shadows, 0)
+            if dr.hint(postpones, mode="scalar"):
+                undecided |= hit.undecided | unsure
             radiance += weight * dr.select(hit.valid, local, self.types.Color3(self.background))
 
             depth += 1
@@ -400,7 +420,7 @@ class Whitted(mi.SamplingIntegrator):
                 ray = self.transmitted(ray, hit, finish, sample, path, refracts)[0]
                 if dr.hint(self.sampled, mode="scalar"):
                     path = 2 * path + 1
-        return radiance, too_deep, signature
+        return radiance, too_deep, signature, undecided
 
     def _hit_word(self, ray: Ray, hit: Hit, path):
         """What the hit of a ray of that path adds to a signature."""
@@ -427,21 +447,23 @@ class Whitted(mi.SamplingIntegrator):
 
     @dr.syntax
     def local_radiance(self, ray: Ray, hit: Hit, finish: Finish, color, sample, path):
-        """What a surface sends back along a ray by itself (Color3): ambient light, and what the lights add; and, if
-        `signing`, a word (UInt32) for the shadows that it lies in, else 0.
+        """What a surface sends back along a ray by itself (Color3): ambient light, and what the lights add; if
+        `signing`, a word (UInt32) for the shadows that it lies in, else 0; and whether one of these is undecided.
         """
         radiance = finish.ka * self.types.Color3(self.ambient) * color
         shadows = dr.zeros(mi.UInt32, dr.width(ray.d)) if self.signing else mi.UInt32(0)
+        unsure = dr.zeros(mi.Bool, dr.width(ray.d))
         if dr.hint(self.shadows, mode="scalar"):
             lit = hit.valid & (finish.kd + finish.ks > 0)
             light = dr.zeros(mi.UInt32, dr.width(ray.d))
             while lit & (light < self.light_count):
                 illumination = self.light(light, ray, hit, finish, color, lit, sample, path)
                 radiance += illumination.diffuse + illumination.specular
+                unsure |= illumination.undecided
                 if dr.hint(self.signing, mode="scalar"):
                     shadows += dr.select(illumination.blocker != NOTHING, shadow_word(path, light), 0)
                 light += 1
-        return radiance, shadows
+        return radiance, shadows, unsure
 
     # ------------------------------------------------------------------ pictures
 
@@ -451,7 +473,7 @@ class Whitted(mi.SamplingIntegrator):
             # Which sample of which pixel a ray is, nobody tells here.
             key = mi.UInt32(mi.Float64(sampler.next_1d()) * 2.0**32) if self.sampled else mi.UInt32(0)
             sample = self.name_sample(key, mi.UInt32(0))
-            color, _, _ = self.trace(start_ray(self.types, ray.o, unit(mi.Vector3d(ray.d))), sample, active)
+            color, *_ = self.trace(start_ray(self.types, ray.o, unit(mi.Vector3d(ray.d))), sample, active)
         return mi.Color3f(color), mi.Bool(active), []
 
     def render(self, scene, sensor=0, seed=0, spp=0, develop=True, evaluate=True):
@@ -537,6 +559,13 @@ def _to_disc(center, position, radius, square, error):
     is_disc = radius > 0
     way = center + (radius * x) * tangent + (radius * y) * bitangent
     return dr.select(is_disc, way, center), dr.select(is_disc, error + off, error)
+
+
+def _has_few(surfaces):
+    """Whether code for each surface is faster than a tree."""
+    size = sum(len(surface.rows) for surface in surfaces)
+    bounded = sum(surface.box is not None for surface in surfaces)
+    return size <= ANALYTIC_LIMIT or (size <= ANALYTIC_MOST and bounded <= ANALYTIC_OBJECTS)
 
 
 def _materials(props, surfaces):

@@ -21,8 +21,10 @@ from native_tracer.bvh import threaded_bvh
 
 SLACK = 2.0**-20
 """By how much, relatively, a distance to a box may be wrong: some roundings to single precision."""
-TIE_MARGIN = 2.0**-24
-"""By how much, relative to the tree and the ray's origin, boxes are wider for what ties with a hit."""
+MARGIN = 2.0**-20
+"""By how much, relative to the tree and the ray's origin, boxes are wider: some roundings, and what ties with a hit."""
+LEAST_SLOPE = 2.0**-60
+"""Of a direction: with less, along an axis, products might overflow, and the ray moves by much less than `MARGIN`."""
 
 _LARGEST_EXPONENT = 1023
 """Of a power of two that is a double."""
@@ -32,12 +34,11 @@ _LARGEST_EXPONENT = 1023
 class Walk:
     """How rays pass through a tree: what does not depend on the node. Lengths are times the tree's scale."""
 
-    origin: Any  # Vector3f, with `remainder`, as a sum of two single-precision numbers, so that differences to it
-    remainder: Any  # Vector3f; are wrong by a share of themselves and no more
-    slope: Any  # Vector3f, the reciprocal of the direction
+    slope: Any  # Vector3f, the reciprocal of the direction, which has no 0 here
+    enter: Any  # Vector3f, what is to be added to `slope` times the sides of a box that are reached first
+    leave: Any  # Vector3f, and last: so that boxes are wider by more than the roundings
     start: Any  # UInt32, the first node
     end: Any  # UInt32, behind the last node
-    margin: Any  # Float, by how much boxes are wider, or None
 
 
 class BoxTree:
@@ -51,19 +52,14 @@ class BoxTree:
         self._nodes, self._node_count = _nodes(boxes, scale)
         dr.make_opaque(self._node_count, self._scale)
 
-    def walk(self, ray: Ray, ties: bool) -> Walk:
-        """How rays pass through the tree; where there may be ties, boxes that they miss by a little count as met."""
-        scaled = ray.o * self._scale
-        origin = mi.Vector3f(scaled)
-        start = _octant(ray.d) * self._node_count
-        return Walk(
-            origin,
-            mi.Vector3f(scaled - self._types.Point3(origin)),
-            quotient(1, mi.Vector3f(ray.d)),
-            start,
-            start + self._node_count,
-            (largest(origin) + 1) * TIE_MARGIN if ties else None,
-        )
+    def walk(self, ray: Ray) -> Walk:
+        """How rays pass through the tree; boxes that they miss by a little count as met."""
+        origin = mi.Vector3f(ray.o * self._scale)
+        d = mi.Vector3f(ray.d)
+        slope = quotient(1, dr.select(d < 0, dr.minimum(d, -LEAST_SLOPE), dr.maximum(d, LEAST_SLOPE)))
+        before, margin = -origin * slope, ((largest(origin) + 1) * MARGIN) * dr.abs(slope)
+        start = _octant(d) * self._node_count
+        return Walk(slope, before - margin, before + margin, start, start + self._node_count)
 
     def limit(self, distance: Any) -> Any:
         """A distance as `next` takes it, and a little more."""
@@ -81,14 +77,10 @@ class BoxTree:
         while walking:
             corners = dr.gather(mi.Array4f, self._nodes, 2 * node, walking)
             rest = dr.gather(mi.Array4f, self._nodes, 2 * node + 1, walking)
-            to_near = (mi.Vector3f(corners.xyz) - walk.origin) - walk.remainder
-            to_far = (mi.Vector3f(corners.w, rest.x, rest.y) - walk.origin) - walk.remainder
-            if dr.hint(walk.margin is not None, mode="scalar"):
-                outward = dr.mulsign(mi.Vector3f(walk.margin), walk.slope)
-                to_near, to_far = to_near - outward, to_far + outward
-            near, far = dr.max(to_near * walk.slope), dr.min(to_far * walk.slope)
-            # A NaN comes from a ray within a side of a box, which contains nothing: no comparison holds.
-            meets = (near <= dr.minimum(far * (1 + SLACK), limit)) & (far >= 0)
+            near = dr.max(dr.fma(mi.Vector3f(corners.xyz), walk.slope, walk.enter))
+            far = dr.min(dr.fma(mi.Vector3f(corners.w, rest.x, rest.y), walk.slope, walk.leave))
+            # Of an origin beyond all measure these are NaN: then every box counts as met.
+            meets = ~(near > dr.minimum(far, limit)) & ~(far < 0)
             item = dr.reinterpret_array(mi.UInt32, rest.w)
             index = dr.select(walking & meets & (item != skipped), item, index)
             following = walk.start + dr.reinterpret_array(mi.UInt32, rest.z)

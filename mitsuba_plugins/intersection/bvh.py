@@ -42,7 +42,7 @@ class BvhSurfaces(ExactSurfaces):
         close = dr.full(mi.Bool, False, width)
         reach = largest(ray.o)
         limit = self._tree.limit(t_best)
-        walk = self._tree.walk(ray, ties=False)
+        walk = self._tree.walk(ray)
         node = mi.UInt32(walk.start)
         # First the object that the ray travels inside, or leaves: a convex one it does not meet again.
         index = ray.object if self.primitives.any_concave else dr.select(ray.inside, ray.object, NOTHING)

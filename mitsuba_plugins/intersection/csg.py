@@ -52,6 +52,10 @@ class Csg(abc.ABC):
     convex = False
     bounded_first = True
 
+    def deciding_ties(self) -> "Csg":
+        """As `Solid` has it."""
+        return self
+
     @abc.abstractmethod
     def intersect(self, rows: Rows, ray: Ray, own: Any, reach: Any, by_rules: bool, which_piece: bool) -> Crossing:
         """Where the value first changes, as `Solid` has it."""

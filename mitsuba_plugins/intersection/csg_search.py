@@ -15,7 +15,7 @@ from mitsuba_plugins.intersection.leaf_passage import Membership, SheetRows, lea
 from mitsuba_plugins.intersection.passages import Crossing
 from mitsuba_plugins.intersection.rays import NOTHING, UPRIGHT, Ray
 from mitsuba_plugins.intersection.rounding import most_blur
-from mitsuba_plugins.intersection.shapes.table import SHAPE_KINDS
+from mitsuba_plugins.intersection.shapes.kind import ShapeKind
 
 BOUND_ROOM = 2.0**-20
 """By how much, relatively, a sphere around a leaf is larger."""
@@ -24,10 +24,11 @@ BOUND_ROOM = 2.0**-20
 class Leaves(Protocol):
     """The leaves of a csg, or of one for each ray, in a kernel."""
 
+    kinds: list[ShapeKind]
     width: int
 
     def kind(self, k: Any) -> Any:
-        """Which of `SHAPE_KINDS` leaf k is (UInt32)."""
+        """Which of `kinds` leaf k is (UInt32)."""
         ...
 
     def range(self, k: Any) -> tuple[Any, Any]:
@@ -108,7 +109,7 @@ class _Search:
     def meet(self, k: Any, inside_sheet: Any, active: Any) -> _Met:
         """Leaf k along the rays, by a call of its kind's function: so it is in the kernel once a kind."""
         first, count = self.leaves.range(k)
-        calls = [lambda *asked, kind=kind: self._meet(kind, *asked) for kind in SHAPE_KINDS.values()]
+        calls = [lambda *asked, kind=kind: self._meet(kind, *asked) for kind in self.leaves.kinds]
         return dr.switch(self.leaves.kind(k), calls, first, count, self.ray, inside_sheet, self.reach, active)
 
     def _meet(self, kind: Any, first: Any, count: Any, ray: Ray, inside_sheet: Any, reach: Any, active: Any) -> _Met:

@@ -26,6 +26,7 @@ from typing import Any
 
 from mitsuba_plugins.intersection.csg import Csg, Leaf, leaves_of
 from mitsuba_plugins.intersection.csg_search import SearchedCsg
+from mitsuba_plugins.intersection.csg_stepped import SteppedCsg
 from mitsuba_plugins.intersection.csg_unrolled import UnrolledCsg
 from mitsuba_plugins.intersection.shapes.kind import Row, Shape, ShapeKind, Vector
 from mitsuba_plugins.intersection.shapes.table import SHAPE_KINDS
@@ -33,6 +34,8 @@ from mitsuba_plugins.intersection.solids import Single, Solid
 
 Box = tuple[Vector, Vector]
 
+MOST_STEPPED = 32
+"""Leaves up to which they are stepped through: beyond, the code takes seconds to compile."""
 MOST_UNROLLED = 8
 """Leaves up to which each has code of its own: faster, but it grows with the square of their number."""
 
@@ -124,8 +127,9 @@ def _surface(name: str, entry: dict[str, Any]) -> Surface:
 
 
 def _csg(program: tuple[int, ...], leaves: tuple[Leaf, ...]) -> Csg:
-    few = len(leaves) <= MOST_UNROLLED
-    return UnrolledCsg(program, leaves) if few else SearchedCsg(program, leaves)
+    if len(leaves) <= MOST_UNROLLED:
+        return UnrolledCsg(program, leaves)
+    return SteppedCsg(program, leaves) if len(leaves) <= MOST_STEPPED else SearchedCsg(program, leaves)
 
 
 def _shape(name: str, entry: dict[str, Any]) -> tuple[ShapeKind, Shape]:

@@ -20,6 +20,9 @@ from mitsuba_plugins.intersection.rays import NOTHING, Hit, Ray
 class MitsubaSurfaces:
     """The shapes of a Mitsuba scene, taken at their word; meshes may stand for spheres."""
 
+    finds_ties = False
+    postpones_ties = False
+
     def __init__(self, scene: Any, surfaces: list[Surface], primitives: Primitives, offset: str) -> None:
         self._scene = scene
         self._primitives = MitsubaPrimitives(scene, surfaces, primitives)
@@ -41,8 +44,8 @@ class MitsubaSurfaces:
         """The ray that leaves `hit` in direction `d`."""
         return Ray(self._offset(hit, d), d, hit.object, hit.primitive, inside, mi.Float(0), spread)
 
-    def blocker(self, hit: Hit, d: Any, distance: Any, error: Any, light: Any, active: Any) -> Any:
-        """The first object between `hit` and a light at `distance` in direction `d`, or NOTHING."""
+    def blocker(self, hit: Hit, d: Any, distance: Any, error: Any, light: Any, active: Any) -> tuple[Any, Any]:
+        """The first object between `hit` and a light at `distance` in direction `d`, or NOTHING; ties are not seen."""
         origin = self._offset(hit, d)
         to_target = hit.p + d * distance - origin
         length = dr.norm(to_target)
@@ -50,7 +53,7 @@ class MitsubaSurfaces:
         probe = mi.Ray3f(origin, quotient(to_target, length), length * (1 - mi.math.ShadowEpsilon), 0.0, [])
         found = self._scene.ray_intersect_preliminary(probe, coherent=False, active=active)
         blocked = active & found.is_valid()
-        return dr.select(blocked, self._primitives.find(found, blocked)[0], NOTHING)
+        return dr.select(blocked, self._primitives.find(found, blocked)[0], NOTHING), False
 
 
 def _mitsuba_offset(hit: Hit, d: Any) -> Any:

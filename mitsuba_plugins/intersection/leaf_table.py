@@ -12,8 +12,7 @@ from mitsuba_plugins.intersection.csg_search import SearchedCsg
 from mitsuba_plugins.intersection.geometry import Surface
 from mitsuba_plugins.intersection.rays import INVERTED, NOTHING, UPRIGHT, Ray, Real
 from mitsuba_plugins.intersection.rows import GatheredRows
-from mitsuba_plugins.intersection.shapes.kind import Shape
-from mitsuba_plugins.intersection.shapes.table import SHAPE_KINDS
+from mitsuba_plugins.intersection.shapes.kind import Shape, ShapeKind
 
 
 class LeafTable:
@@ -21,7 +20,9 @@ class LeafTable:
 
     def __init__(self, types: Real, surfaces: list[Surface], first_rows: list[int]) -> None:
         """Take the surfaces, and the index of each one's first row."""
-        numbers = {id(kind): k for k, kind in enumerate(SHAPE_KINDS.values())}
+        numbers: dict[int, int] = {}
+        self.kinds: list[ShapeKind] = []
+        """Those that there are."""
         first_leaf: list[int] = []
         kinds: list[int] = []
         firsts: list[int] = []
@@ -30,9 +31,13 @@ class LeafTable:
         sheets = list(range(sum(len(surface.rows) for surface in surfaces)))
         for surface, row in zip(surfaces, first_rows, strict=True):
             first_leaf.append(len(kinds))
-            if not isinstance(surface.solid, SearchedCsg):
+            solid = surface.solid.deciding_ties()
+            if not isinstance(solid, SearchedCsg):
                 continue
-            for leaf, (_, shape) in zip(surface.solid.leaves, surface.shapes, strict=True):
+            for leaf, (_, shape) in zip(solid.leaves, surface.shapes, strict=True):
+                if id(leaf.kind) not in numbers:
+                    numbers[id(leaf.kind)] = len(self.kinds)
+                    self.kinds.append(leaf.kind)
                 kinds.append(numbers[id(leaf.kind)])
                 firsts.append(row + leaf.first)
                 counts.append(len(leaf.sheets))
@@ -66,10 +71,11 @@ class GatheredLeaves:
         self._row = row
         self._first_leaf = dr.gather(mi.UInt32, table.first_leaf, index, active)
         self._active = active
+        self.kinds = table.kinds
         self.width = width
 
     def kind(self, k: Any) -> Any:
-        """Which of `SHAPE_KINDS` leaf k is."""
+        """Which of `kinds` leaf k is."""
         return dr.gather(mi.UInt32, self._table.kind, self._first_leaf + k, self._active)
 
     def range(self, k: Any) -> tuple[Any, Any]:

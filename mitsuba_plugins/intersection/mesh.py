@@ -29,6 +29,8 @@ MOST_STEPS = 32
 class MeshSurfaces(ExactSurfaces):
     """The shapes of a Mitsuba scene, with the exact surfaces they were made from."""
 
+    finds_ties = False
+
     def __init__(
         self, types: Real, scene: Any, surfaces: list[Surface], primitives: Primitives, contacts: LightContacts
     ) -> None:

@@ -45,9 +45,14 @@ class Primitives:
         self._rows = column(types.Float, rows)
         self._kind = column(mi.UInt32, [self._kinds.index(kind) for kind in kinds])
         self._solid = column(mi.UInt32, [self._solids.index(surface.solid) for surface in surfaces])
+        ruled = [surface.solid.deciding_ties() for surface in surfaces]
+        self._solids_by_rules = list(dict.fromkeys(ruled)) or self._solids
+        self._solid_by_rules = self._solid
+        if self._solids_by_rules != self._solids:
+            self._solid_by_rules = column(mi.UInt32, [self._solids_by_rules.index(solid) for solid in ruled])
         self._first = column(mi.UInt32, self.first)
         self._count = column(mi.UInt32, [len(surface.rows) for surface in surfaces])
-        any_searched = any(isinstance(solid, SearchedCsg) for solid in self._solids)
+        any_searched = any(isinstance(solid, SearchedCsg) for solid in self._solids_by_rules)
         self._leaves = LeafTable(types, surfaces, self.first) if any_searched else None
         self.any_moving = any(surface.moves for surface in surfaces)
         """Whether rays need a time."""
@@ -97,6 +102,8 @@ class Primitives:
                 return crossing_if(active, ray, width, lambda: solid.intersect(*asked))
             return solid.intersect(*asked)
 
+        if by_rules:
+            return _by_kind(self._solids_by_rules, self._solid_by_rules, index, active, intersect)
         return _by_kind(self._solids, self._solid, index, active, intersect)
 
     def intersect_one(self, ray: Ray, index: Any, primitive: Any, active: Any, reach: Any) -> Crossing:

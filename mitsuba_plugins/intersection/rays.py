@@ -75,6 +75,7 @@ class Hit:
     off: Any  # Float, how far ray and surface may be off from one another there
     error: Any  # Float, how far p may be off
     lean: Any  # Float, how far n may be off
+    undecided: Any = False  # Bool, whether the ray came close to a tie that nobody has decided
     place: Any = None  # Point3, where p is on the object at time 0, where something moves
     time: Any = None  # Float, the ray's
 

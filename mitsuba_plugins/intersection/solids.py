@@ -21,6 +21,10 @@ class Solid(Protocol):
         """Whether it takes so long to intersect that a sphere around it is tested before."""
         ...
 
+    def deciding_ties(self) -> "Solid":
+        """The same with the code by which ties are decided."""
+        ...
+
     def intersect(self, rows: Rows, ray: Ray, own: Any, reach: Any, by_rules: bool, which_piece: bool) -> Crossing:
         """Where rays first cross it; `by_rules` of ties, or else saying whether that is close to one.
 
@@ -45,6 +49,10 @@ class Single:
     def bounded_first(self) -> bool:
         """As its kind."""
         return self.kind.BOUNDED_FIRST
+
+    def deciding_ties(self) -> Solid:
+        """Its own."""
+        return self
 
     def intersect(self, rows: Rows, ray: Ray, own: Any, reach: Any, by_rules: bool, which_piece: bool) -> Crossing:
         """At the crossing of its passage that counts."""

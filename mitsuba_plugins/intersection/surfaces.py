@@ -15,20 +15,24 @@ from mitsuba_plugins.intersection.ties import AllObjects, Candidates, Ties
 class ExactSurfaces:
     """What a ray meets, the point and the normal from the exact surfaces; subclasses know how to search them.
 
-    Masks of active rays come from `lanes`.
+    Masks of active rays come from `lanes`. Rays that are close to a tie are searched for once more, by the format's
+    rules; unless `postpones_ties`: then it is only told which they are, and the kernel has none of the rules' code.
     """
+
+    finds_ties = True
 
     def __init__(self, primitives: Primitives, contacts: LightContacts, candidates: Candidates | None = None) -> None:
         """Look for ties among `candidates`, or all objects."""
         self.primitives = primitives
         self.contacts = contacts
+        self.postpones_ties = False
         self._ties = Ties(primitives, contacts, candidates or AllObjects(primitives.object_count))
 
     def closest(self, ray: Ray, active: Any) -> Hit:
         """The first surface that a ray meets, the point moved onto it to shed the error along the normal."""
         t, index, primitive, close = self.find_closest(ray, active)
-        ties = close is not None and decides_ties(t)
-        if ties:
+        ties = self.finds_ties and decides_ties(t)
+        if ties and not self.postpones_ties:
             t, index, primitive = self._ties.closest(ray, t, index, primitive, active & close)
         valid = active & (index != NOTHING)
         moving, ray = ray, self.primitives.at_rest(ray, index, valid)
@@ -43,22 +47,25 @@ class ExactSurfaces:
             along = quotient(off, dr.abs(dr.dot(n, ray.d)))
             error += dr.minimum(along, most_blur(t) * (largest(p) + t))
         lean = quotient(error, surface.radius)
-        hit = Hit(valid, t, index, primitive, p, n, inside, off, error, lean)
+        undecided = active & close if ties and self.postpones_ties else False
+        hit = Hit(valid, t, index, primitive, p, n, inside, off, error, lean, undecided)
         return self.primitives.taken_along(hit, moving, valid)
 
     def spawn(self, hit: Hit, d: Any, inside: Any, spread: Any) -> Ray:
         """The ray that leaves `hit` in direction `d`, on the given side of the object."""
         return spawn(hit, d, inside, spread)
 
-    def blocker(self, hit: Hit, d: Any, distance: Any, error: Any, light: Any, active: Any) -> Any:
-        """Some object between `hit` and a light at `distance` in direction `d`, on the side it was seen from; these two
-        ends of the way may be off by `error`.
+    def blocker(self, hit: Hit, d: Any, distance: Any, error: Any, light: Any, active: Any) -> tuple[Any, Any]:
+        """Some object between `hit` and a light at `distance` in direction `d`, on the side it was seen from, and
+        whether that is undecided; these two ends of the way may be off by `error`.
         """
         ray = spawn(hit, d, hit.inside, shadow_spread(error, distance))
         found, close = self.find_blocker(ray, distance, light, active)
-        if close is None or not decides_ties(distance):
-            return found
-        return self._ties.blocker(ray, distance, light, found, active & close)
+        if not self.finds_ties or not decides_ties(distance):
+            return found, False
+        if self.postpones_ties:
+            return found, active & close
+        return self._ties.blocker(ray, distance, light, found, active & close), False
 
     def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any, Any]:
         """Distance (infinite for none), object (NOTHING for none) and primitive of the first hit, and whether it was

@@ -16,7 +16,7 @@ from mitsuba_plugins.intersection.rounding import most_blur
 class Candidates(Protocol):
     """Which objects rays may meet, in any order; a `BoxTree` is one."""
 
-    def walk(self, ray: Ray, ties: bool) -> Any:
+    def walk(self, ray: Ray) -> Any:
         """What `next` needs of rays; its `start` is the first node."""
 
     def limit(self, distance: Any) -> Any:
@@ -37,7 +37,7 @@ class AllObjects:
     def __init__(self, count: Any) -> None:
         self._count = count
 
-    def walk(self, ray: Ray, ties: bool) -> _Turns:
+    def walk(self, ray: Ray) -> _Turns:
         """As `Candidates` has it."""
         return _Turns(dr.zeros(mi.UInt32, dr.width(ray.d)))
 
@@ -64,7 +64,7 @@ class Ties:
         if close:
             width = dr.width(close)
             nobody = dr.full(mi.UInt32, NOTHING, width)
-            walk = self._candidates.walk(ray, ties=True)
+            walk = self._candidates.walk(ray)
             # The first object of those that tie with the nearest: also where one ties with two that do not tie with one
             # another, the order in which they are visited does not matter.
             nearest = dr.full(type(t), dr.inf, width)
@@ -100,7 +100,7 @@ class Ties:
             width = dr.width(close)
             nobody = dr.full(mi.UInt32, NOTHING, width)
             found = dr.full(mi.UInt32, NOTHING, width)
-            walk = self._candidates.walk(ray, ties=True)
+            walk = self._candidates.walk(ray)
             node = mi.UInt32(walk.start)
             searching = mi.Bool(close)
             while searching:

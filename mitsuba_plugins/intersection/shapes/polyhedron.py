@@ -65,7 +65,7 @@ class _Span:
     leave_plane: Any
     enter_error: Any  # Float, as is `leave_error`
     leave_error: Any
-    along: Any  # Bool, whether the ray runs along a plane
+    above: Any  # Float, how far above a plane that it runs along the ray starts, the largest of all
     outside: Any  # Bool, whether it runs outside of one
     between: Any  # Float, from where it crosses one plane to where it crosses the next
 
@@ -80,7 +80,7 @@ def _whole_line(ray: Ray, width: int) -> _Span:
         leave_plane=dr.zeros(mi.UInt32, width),
         enter_error=dr.zeros(kind, width),
         leave_error=dr.zeros(kind, width),
-        along=dr.full(mi.Bool, False, width),
+        above=dr.full(kind, -dr.inf, width),
         outside=dr.full(mi.Bool, False, width),
         between=dr.full(kind, dr.inf, width),
     )
@@ -113,20 +113,22 @@ def passage(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
             leave=dr.select(leaves, t, span.leave),
             enter_plane=dr.select(enters, plane, span.enter_plane),
             leave_plane=dr.select(leaves, plane, span.leave_plane),
-            along=span.along | ~(entering | leaving),
+            above=dr.select((entering | leaving) | (height < span.above), span.above, height),
             between=dr.select(between < span.between, between, span.between),
         )
 
     span = rows.fold(narrow, _whole_line(ray, rows.width))
     gap = span.enter - span.leave
     at_edge = (gap > 0) & (gap <= most_blur(gap) * (reach + span.enter))
+    # More than `surface_error` says, for planes that pass as near as that.
+    in_plane = ray.t_min + most_blur(gap) * 4 * reach
     return Passage(
         near=span.enter,
         far=span.leave,
         near_primitive=span.enter_plane,
         far_primitive=span.leave_plane,
-        meets=span.enter <= span.leave,
-        close=(span.along | at_edge) & (~own | ray.inside),
+        meets=(span.enter <= span.leave) & ~(span.above > in_plane),
+        close=((dr.abs(span.above) <= in_plane) | at_edge) & (~own | ray.inside),
         between=span.between,
     )
 
