@@ -17,8 +17,8 @@ HEIGHT ?= 600
 SECONDS ?= 60
 
 BIN := .venv/bin
-SOURCES := pyproject.toml CMakeLists.txt $(wildcard native_tracer/src/*.* native_tracer/src/*/* student_tracer/src/*)
-CPP := $(wildcard native_tracer/src/*/*.cpp native_tracer/src/*/*.h student_tracer/src/*.cpp student_tracer/src/*.h)
+SOURCES := pyproject.toml CMakeLists.txt $(wildcard native_tracer/src/*.* native_tracer/src/*/* student_tracer/src/* certified_tracer/src/*)
+CPP := $(wildcard native_tracer/src/*/*.cpp native_tracer/src/*/*.h student_tracer/src/*.cpp student_tracer/src/*.h certified_tracer/src/*.cpp certified_tracer/src/*.h)
 
 .PHONY: render test check figures format stability mutants fuzz clean
 .DELETE_ON_ERROR:
