@@ -43,6 +43,7 @@ class Scene:
         identities: Sequence[int],
         eye: Sequence[bool],
         lights: Sequence[Sequence[bool]],
+        layers: Sequence[tuple[int, int]],
     ) -> int: ...
     def add_body(
         self,

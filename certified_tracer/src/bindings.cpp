@@ -253,20 +253,23 @@ NB_MODULE(_certified, module) {
             "add_leaf",
             [](Scene& scene, int kind, const std::vector<std::vector<Given>>& surfaces,
                const std::vector<int>& identities, const std::vector<bool>& eye,
-               const std::vector<std::vector<bool>>& lights) {
+               const std::vector<std::vector<bool>>& lights,
+               const std::vector<std::pair<int, std::int64_t>>& layers) {
                 if (kind < 0 || kind > 2 || surfaces.empty() || identities.size() != surfaces.size() ||
-                    eye.size() != surfaces.size() || lights.size() != surfaces.size()) {
+                    eye.size() != surfaces.size() || lights.size() != surfaces.size() ||
+                    layers.size() != surfaces.size()) {
                     throw std::invalid_argument("a leaf needs surfaces of a kind");
                 }
                 const std::size_t first = scene.surfaces.size();
                 for (std::size_t i = 0; i < surfaces.size(); ++i) {
                     scene.surfaces.push_back(
-                        {static_cast<Kind>(kind), numbers(surfaces[i]), identities[i], eye[i], lights[i]});
+                        {static_cast<Kind>(kind), numbers(surfaces[i]), identities[i], eye[i], lights[i],
+                         layers[i].first, layers[i].second});
                 }
                 scene.leaves.push_back({first, surfaces.size()});
                 return scene.leaves.size() - 1;
             },
-            "kind"_a, "surfaces"_a, "identities"_a, "eye"_a, "lights"_a)
+            "kind"_a, "surfaces"_a, "identities"_a, "eye"_a, "lights"_a, "layers"_a)
         .def(
             "add_body",
             [](Scene& scene, int pigment, int finish, const std::vector<std::size_t>& leaves,

@@ -75,7 +75,8 @@ template <typename End>
 struct Met {
     Interval<End> t;
     int body, surface;
-    bool inside;  // it is met from within
+    bool inside;  // the body is met from within
+    bool behind;  // the surface is met from the side that its normal leaves
 };
 
 template <typename End>
@@ -104,7 +105,7 @@ class Bodies {
             if (passage.count == 0) {
                 return false;
             }
-            met = {passage.crossings[0].t, index, passage.crossings[0].surface, passage.inside};
+            met = {passage.crossings[0].t, index, passage.crossings[0].surface, passage.inside, passage.inside};
             return true;
         }
         return meet_csg(index, body, ray, met);
@@ -398,7 +399,7 @@ class Bodies {
             check(enters);
             add(result, enters.first.t, enters.first.surface);
         }
-        if (left > 0) {
+        if (leaves.found && left > 0) {
             if (result.count == 0) {
                 check(leaves);
             }
@@ -428,7 +429,7 @@ class Bodies {
             return false;
         }
         check(leaves);
-        met = {leaves.first.t, index, leaves.first.surface, true};
+        met = {leaves.first.t, index, leaves.first.surface, true, true};
         return true;
     }
 
@@ -484,6 +485,7 @@ class Bodies {
                 }
             }
             std::size_t named = first;
+            const std::uint64_t bits_before = bits;
             for (std::size_t k = first; k < last; ++k) {
                 bits ^= std::uint64_t(1) << events[k].leaf;
                 named = events[k].crossing.surface < events[named].crossing.surface ? k : named;
@@ -492,7 +494,8 @@ class Bodies {
                 if (!events[named].sure) {
                     throw Undecided{Reason::plane};
                 }
-                met = {events[named].crossing.t, index, events[named].crossing.surface, before};
+                met = {events[named].crossing.t, index, events[named].crossing.surface, before,
+                       (bits_before >> events[named].leaf & 1) != 0};
                 return true;
             }
             first = last;

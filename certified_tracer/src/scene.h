@@ -4,6 +4,7 @@
 
 #include <array>
 #include <cstddef>
+#include <cstdint>
 #include <vector>
 
 namespace certified {
@@ -41,13 +42,16 @@ enum class Kind { sphere, plane, quadric };
 
 // A sphere has its centre and radius, a plane a to d, a quadric A to J. Surfaces of one plane have one `identity`, and so
 // have equal spheres and quadrics: what is true of one is true of the other, whatever the roundings. `eye` and `lights`
-// say what lies on it.
+// say what lies on it. All points of a plane across an axis have one coordinate, which lies in one known layer of tiles of
+// the body's checker: it may be where two of them meet.
 struct Surface {
     Kind kind;
     std::vector<Number> numbers;
     int identity;
     bool eye;
     std::vector<bool> lights;
+    int axis = -1;
+    std::int64_t layer = 0;
 };
 
 // A sphere, a quadric, or where all of some planes are.

@@ -94,8 +94,8 @@ class Tracer {
         const auto& finish = scene_.finishes[static_cast<std::size_t>(body.finish)];
         const V point = ray.origin + met.t * ray.direction;
         const V outward = bodies_.normal(met.surface, point);
-        const V normal = met.inside ? -outward : outward;
-        const V pigment = pigment_at(body.pigment, point);
+        const V normal = met.behind ? -outward : outward;
+        const V pigment = pigment_at(body.pigment, point, met.surface);
         V color = finish.ka * product(scene_.ambient, pigment);
         if (finish.lit) {
             for (std::size_t i = 0; i < scene_.lights.size(); ++i) {
@@ -250,16 +250,21 @@ class Tracer {
 
     // ---- Pigments
 
-    V pigment_at(int index, const V& point) {
+    V pigment_at(int index, const V& point, int surface) {
         const auto& prepared = scene_.pigments[static_cast<std::size_t>(index)];
         const Pigment& pigment = scene_.scene.pigments[static_cast<std::size_t>(index)];
         if (pigment.pattern == Pattern::solid) {
             return prepared.first;
         }
         if (pigment.pattern == Pattern::checker) {
+            const Surface& met = scene_.scene.surfaces[static_cast<std::size_t>(surface)];
+            const std::array<const I*, 3> coordinates = {&point.x, &point.y, &point.z};
             bool odd = false;
-            for (const I* x : {&point.x, &point.y, &point.z}) {
-                const std::optional<std::int64_t> cell = whole(*x / prepared.size, Reason::tile, false);
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                const std::optional<std::int64_t> cell =
+                    met.axis == static_cast<int>(axis)
+                        ? met.layer
+                        : whole(*coordinates[axis] / prepared.size, Reason::tile, false);
                 if (!cell) {
                     doubt_ = Reason::tile;
                     return {hull(prepared.first.x, prepared.second.x), hull(prepared.first.y, prepared.second.y),

@@ -92,7 +92,7 @@ def certified_scene(scene: Scene, settings: Settings, ulps: float = 0.0) -> "cer
     for o, facts in zip(scene.objects, needs.facts, strict=True):
         leaves: list[Primitive] = []
         program = _program(o.shape, leaves)
-        indices = [surfaces.add_leaf(built, leaf, ulps) for leaf in leaves]
+        indices = [surfaces.add_leaf(built, leaf, scene.pigments[o.pigment], ulps) for leaf in leaves]
         low, high = _box(facts.low, facts.high) if facts.bounded else ((-math.inf,) * 3, (math.inf,) * 3)
         built.add_body(o.pigment, o.finish, indices, program if isinstance(o.shape, Csg) else [], low, high)
     return built
@@ -182,8 +182,8 @@ class _Surfaces:
     lights: tuple[Vector, ...]
     known: dict[tuple[object, ...], int] = field(default_factory=dict)
 
-    def add_leaf(self, built: "certified_tracer.Scene", leaf: Primitive, ulps: float) -> int:
-        """Add a leaf; its index."""
+    def add_leaf(self, built: "certified_tracer.Scene", leaf: Primitive, pigment: Pigment, ulps: float) -> int:
+        """Add a leaf of a body with that pigment; its index."""
         kind = SPHERE if isinstance(leaf, Sphere) else PLANE if isinstance(leaf, Polyhedron) else QUADRIC
         surfaces = _numbers_of(leaf)
         return built.add_leaf(
@@ -192,6 +192,7 @@ class _Surfaces:
             [self._identity(kind, surface) for surface in surfaces],
             [_lies_on(kind, surface, self.eye) for surface in surfaces],
             [[_lies_on(kind, surface, light) for light in self.lights] for surface in surfaces],
+            [_layer(kind, surface, pigment) for surface in surfaces],
         )
 
     def _identity(self, kind: int, surface: tuple[float, ...]) -> int:
@@ -200,6 +201,16 @@ class _Surfaces:
             first = next(x for x in values if x)
             values = tuple(x / first for x in values)
         return self.known.setdefault((kind, *values), len(self.known))
+
+
+def _layer(kind: int, surface: tuple[float, ...], pigment: Pigment) -> tuple[int, int]:
+    """Of a plane across an axis that axis, and the layer of a checker's tiles that its points lie in; -1 of others."""
+    axes = [axis for axis in range(3) if surface[axis]]
+    if kind != PLANE or len(axes) != 1 or not isinstance(pigment, Checker):
+        return -1, 0
+    axis = axes[0]
+    coordinate = -exact(surface[3]) / exact(surface[axis])
+    return axis, math.floor(coordinate / exact(pigment.size))
 
 
 def _lies_on(kind: int, surface: tuple[float, ...], point: Vector) -> bool:
