@@ -1,4 +1,4 @@
-"""Certified pixels: functions against many digits, pixels against a tracer without rounding, faults that are noticed."""
+"""Certified pixels: functions against many digits, pixels against a tracer without rounding, and faults noticed."""
 
 import json
 import random

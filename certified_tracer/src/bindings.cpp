@@ -188,10 +188,26 @@ NB_MODULE(_certified, module) {
             [](Scene* scene, const GivenTriple& eye, const GivenTriple& look_at, const GivenTriple& up,
                const Given& fovy, const GivenTriple& ambient, const GivenTriple& background, const Given& cutoff,
                int max_depth, int width, int height, int grid, bool corner, bool blinn, bool ties) {
-                new (scene) Scene{numbers(eye),     numbers(look_at),    numbers(up),    number(fovy), numbers(ambient),
-                                  numbers(background), number(cutoff), max_depth, width,  height, grid,
-                                  corner,           blinn,               ties,           {},           {},
-                                  {},               {},                  {},             {}};
+                new (scene) Scene{numbers(eye),
+                                  numbers(look_at),
+                                  numbers(up),
+                                  number(fovy),
+                                  numbers(ambient),
+                                  numbers(background),
+                                  number(cutoff),
+                                  max_depth,
+                                  width,
+                                  height,
+                                  grid,
+                                  corner,
+                                  blinn,
+                                  ties,
+                                  {},
+                                  {},
+                                  {},
+                                  {},
+                                  {},
+                                  {}};
             },
             nb::kw_only(), "eye"_a, "look_at"_a, "up"_a, "fovy"_a, "ambient"_a, "background"_a, "cutoff"_a,
             "max_depth"_a, "width"_a, "height"_a, "grid"_a, "corner"_a, "blinn"_a, "ties"_a)
@@ -253,8 +269,7 @@ NB_MODULE(_certified, module) {
             "add_leaf",
             [](Scene& scene, int kind, const std::vector<std::vector<Given>>& surfaces,
                const std::vector<int>& identities, const std::vector<bool>& eye,
-               const std::vector<std::vector<bool>>& lights,
-               const std::vector<std::pair<int, std::int64_t>>& layers) {
+               const std::vector<std::vector<bool>>& lights, const std::vector<std::pair<int, std::int64_t>>& layers) {
                 if (kind < 0 || kind > 2 || surfaces.empty() || identities.size() != surfaces.size() ||
                     eye.size() != surfaces.size() || lights.size() != surfaces.size() ||
                     layers.size() != surfaces.size()) {
@@ -262,9 +277,8 @@ NB_MODULE(_certified, module) {
                 }
                 const std::size_t first = scene.surfaces.size();
                 for (std::size_t i = 0; i < surfaces.size(); ++i) {
-                    scene.surfaces.push_back(
-                        {static_cast<Kind>(kind), numbers(surfaces[i]), identities[i], eye[i], lights[i],
-                         layers[i].first, layers[i].second});
+                    scene.surfaces.push_back({static_cast<Kind>(kind), numbers(surfaces[i]), identities[i], eye[i],
+                                              lights[i], layers[i].first, layers[i].second});
                 }
                 scene.leaves.push_back({first, surfaces.size()});
                 return scene.leaves.size() - 1;

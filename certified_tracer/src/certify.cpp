@@ -17,13 +17,13 @@ namespace {
 
 // The processor rounds upward while there is one.
 class Upward {
-  public:
+ public:
     Upward() : before_(std::fegetround()) { std::fesetround(FE_UPWARD); }
     ~Upward() { std::fesetround(before_); }
     Upward(const Upward&) = delete;
     Upward& operator=(const Upward&) = delete;
 
-  private:
+ private:
     int before_;
 };
 
@@ -48,7 +48,7 @@ bool settle(const I& channel, std::uint8_t& low, std::uint8_t& high) {
 
 template <typename End>
 class Rung {
-  public:
+ public:
     Rung(const Scene& scene, const Tree& tree, int number, bool last)
         : prepared_(scene), tree_(tree), number_(number), last_(last) {}
 
@@ -84,7 +84,7 @@ class Rung {
         return result;
     }
 
-  private:
+ private:
     PreparedScene<End> prepared_;
     const Tree& tree_;
     int number_;

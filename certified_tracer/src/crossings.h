@@ -15,7 +15,7 @@ namespace certified {
 // ties wants it: "equal but for roundings".
 template <typename End>
 class Judge {
-  public:
+ public:
     using I = Interval<End>;
 
     explicit Judge(bool last) : last_(last) {}
@@ -39,7 +39,7 @@ class Judge {
 
     bool tied = false;  // such a number was met
 
-  private:
+ private:
     static constexpr double tie = 0x1p-270;
 
     bool last_;
@@ -81,7 +81,7 @@ struct Met {
 
 template <typename End>
 class Bodies {
-  public:
+ public:
     using I = Interval<End>;
     using V = Vector<I>;
     using R = Ray<End>;
@@ -142,7 +142,7 @@ class Bodies {
         return {};
     }
 
-  private:
+ private:
     const S& surface(std::size_t index) const { return scene_.surfaces[index]; }
     const S& surface(int index) const { return scene_.surfaces[static_cast<std::size_t>(index)]; }
 
@@ -234,8 +234,8 @@ class Bodies {
         const S& s = surface(index);
         const auto& q = s.numbers;
         const V& d = ray.direction;
-        const I a = q[0] * square(d.x) + q[1] * square(d.y) + q[2] * square(d.z) + q[3] * d.x * d.y +
-                    q[4] * d.x * d.z + q[5] * d.y * d.z;
+        const I a = q[0] * square(d.x) + q[1] * square(d.y) + q[2] * square(d.z) + q[3] * d.x * d.y + q[4] * d.x * d.z +
+                    q[5] * d.y * d.z;
         const I b2 = dot(gradient(s, ray.origin), d);  // 2 b
         const int second = judge_.sign(a, Reason::hit);
         Passage<End> result;
@@ -341,7 +341,8 @@ class Bodies {
         }
     }
 
-    // Where a ray meets a plane: sign of its slope, and the distance if that is not 0; `side` tells of one that runs along.
+    // Where a ray meets a plane: sign of its slope, and the distance if that is not 0; `side` tells of one that runs
+    // along.
     int meet_plane(const S& s, const R& ray, I& t, int& side) {
         const bool start = starts_on(s, ray), end = ends_on(s, ray);
         side = 0;
@@ -460,8 +461,8 @@ class Bodies {
             const Passage<End> passage = pass(scene_.scene.leaves[body.leaves[k]], ray, false);
             bits |= std::uint64_t(passage.inside) << k;
             for (int i = 0; i < passage.count; ++i) {
-                events.push_back({passage.crossings[static_cast<std::size_t>(i)], k,
-                                  i == passage.count - 1 ? second_sure_ : true});
+                events.push_back(
+                    {passage.crossings[static_cast<std::size_t>(i)], k, i == passage.count - 1 ? second_sure_ : true});
             }
         }
         if (events.empty()) {

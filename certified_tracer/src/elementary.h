@@ -34,8 +34,8 @@ bool is_tiny(const Interval<End>& size) {
     return size.high_double() < std::ldexp(1.0, -Digits<End>::value - 8);
 }
 
-// arctan(1/n) for n > 1, or artanh(1/n) where all terms have one sign: the rest of either is below the first term that is
-// left out, times n^2 / (n^2 - 1) <= 2.
+// arctan(1/n) for n > 1, or artanh(1/n) where all terms have one sign: the rest of either is below the first term that
+// is left out, times n^2 / (n^2 - 1) <= 2.
 template <typename End>
 Interval<End> inverse_tangent(int n, bool hyperbolic) {
     using I = Interval<End>;

@@ -17,7 +17,7 @@ namespace certified {
 
 template <typename End>
 class Interval {
-  public:
+ public:
     Interval() = default;
     Interval(int x) : minus_low_(-x), high_(x) {}
     explicit Interval(double x) : minus_low_(-x), high_(x) {}
@@ -123,7 +123,7 @@ class Interval {
 
     Interval& operator+=(const Interval& x) { return *this = *this + x; }
 
-  private:
+ private:
     static Interval from_ends(const End& minus_low, const End& high) {
         Interval result;
         result.minus_low_ = minus_low;

@@ -61,8 +61,8 @@ struct PreparedScene {
         int identity;
         bool eye;
         const std::vector<bool>* lights;
-        V vector;              // a sphere's centre, a plane's unit normal
-        I number;              // a sphere's radius, a plane's offset to that normal
+        V vector;                   // a sphere's centre, a plane's unit normal
+        I number;                   // a sphere's radius, a plane's offset to that normal
         std::array<I, 10> numbers;  // a quadric's
     };
 
@@ -105,8 +105,8 @@ struct PreparedScene {
             surfaces.push_back(prepared(surface));
         }
         for (const Pigment& p : scene.pigments) {
-            PreparedPigment result{enclosed<End>(p.first), enclosed<End>(p.second), enclosed<End>(p.size),
-                                   {}, {}, 0, 0};
+            PreparedPigment result{
+                enclosed<End>(p.first), enclosed<End>(p.second), enclosed<End>(p.size), {}, {}, 0, 0};
             if (p.pattern == Pattern::texmap) {
                 const I width = p.width, height = p.height;
                 const auto scaled = [](const std::array<Number, 4>& numbers, const I& scale) {
@@ -123,8 +123,10 @@ struct PreparedScene {
             const I ior = enclosed<End>(f.ior), kd = enclosed<End>(f.kd), ks = enclosed<End>(f.ks);
             const I kr = enclosed<End>(f.kr), kt = enclosed<End>(f.kt);
             finishes.push_back({enclosed<End>(f.ka), kd, ks, enclosed<End>(f.alpha), kr, kt,
-                                kt.is_zero() ? I(1) : f.ior_is_index ? I(1) / ior : ior, !kd.is_zero() || !ks.is_zero(),
-                                !kr.is_zero(), !kt.is_zero()});
+                                kt.is_zero()     ? I(1)
+                                : f.ior_is_index ? I(1) / ior
+                                                 : ior,
+                                !kd.is_zero() || !ks.is_zero(), !kr.is_zero(), !kt.is_zero()});
         }
     }
 
@@ -136,7 +138,7 @@ struct PreparedScene {
     std::vector<PreparedPigment> pigments;
     std::vector<PreparedFinish> finishes;
 
-  private:
+ private:
     static PreparedSurface prepared(const Surface& surface) {
         PreparedSurface result{surface.kind, surface.identity, surface.eye, &surface.lights, {}, 0, {}};
         const auto number = [&](std::size_t i) { return enclosed<End>(surface.numbers[i]); };

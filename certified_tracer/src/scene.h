@@ -40,10 +40,10 @@ struct Finish {
 
 enum class Kind { sphere, plane, quadric };
 
-// A sphere has its centre and radius, a plane a to d, a quadric A to J. Surfaces of one plane have one `identity`, and so
-// have equal spheres and quadrics: what is true of one is true of the other, whatever the roundings. `eye` and `lights`
-// say what lies on it. All points of a plane across an axis have one coordinate, which lies in one known layer of tiles of
-// the body's checker: it may be where two of them meet.
+// A sphere has its centre and radius, a plane a to d, a quadric A to J. Surfaces of one plane have one `identity`, and
+// so have equal spheres and quadrics: what is true of one is true of the other, whatever the roundings. `eye` and
+// `lights` say what lies on it. All points of a plane across an axis have one coordinate, which lies in one known layer
+// of tiles of the body's checker: it may be where two of them meet.
 struct Surface {
     Kind kind;
     std::vector<Number> numbers;

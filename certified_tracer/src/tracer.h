@@ -1,4 +1,5 @@
-// The colours of pixels, as docs and README read the format, in intervals: what they enclose is true whatever is rounded.
+// The colours of pixels, as docs and README read the format, in intervals: what they enclose is true whatever is
+// rounded.
 //
 // A decision that is not certain ends the pixel, but where both answers can be told at once: a tile, a texel, whether a
 // light is seen.
@@ -20,7 +21,7 @@ namespace certified {
 
 template <typename End>
 class Tracer {
-  public:
+ public:
     using I = Interval<End>;
     using V = Vector<I>;
     using R = Ray<End>;
@@ -50,7 +51,7 @@ class Tracer {
     Reason doubt() const { return doubt_; }
     bool tied() const { return judge_.tied; }
 
-  private:
+ private:
     struct Task {
         R ray;
         I weight;
@@ -262,9 +263,8 @@ class Tracer {
             bool odd = false;
             for (std::size_t axis = 0; axis < 3; ++axis) {
                 const std::optional<std::int64_t> cell =
-                    met.axis == static_cast<int>(axis)
-                        ? met.layer
-                        : whole(*coordinates[axis] / prepared.size, Reason::tile, false);
+                    met.axis == static_cast<int>(axis) ? met.layer
+                                                       : whole(*coordinates[axis] / prepared.size, Reason::tile, false);
                 if (!cell) {
                     doubt_ = Reason::tile;
                     return {hull(prepared.first.x, prepared.second.x), hull(prepared.first.y, prepared.second.y),
@@ -339,9 +339,9 @@ class Tracer {
             const std::int64_t rest = i % count;
             return static_cast<std::size_t>(rest < 0 ? rest + count : rest);
         };
-        const unsigned short* t = pigment.texels.data() + 3 * (wrapped(row, pigment.height) *
-                                                                  static_cast<std::size_t>(pigment.width) +
-                                                              wrapped(column, pigment.width));
+        const unsigned short* t =
+            pigment.texels.data() + 3 * (wrapped(row, pigment.height) * static_cast<std::size_t>(pigment.width) +
+                                         wrapped(column, pigment.width));
         const I largest = pigment.largest;
         return {I(t[0]) / largest, I(t[1]) / largest, I(t[2]) / largest};
     }

@@ -21,7 +21,7 @@ struct DoubleRay {
 };
 
 class Tree {
-  public:
+ public:
     explicit Tree(const Scene& scene) {
         for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
             const Body& body = scene.bodies[i];
@@ -69,7 +69,7 @@ class Tree {
 
     std::size_t size() const { return nodes_.size(); }
 
-  private:
+ private:
     struct Box {
         std::array<double, 3> low, high;
     };
@@ -121,7 +121,8 @@ class Tree {
             const int sign = ray.sign[axis];
             if (sign == 0) {
                 const Interval<double>& d = ray.direction[axis];
-                if (d.is_zero() && (ray.origin[axis].high() < box.low[axis] || ray.origin[axis].low() > box.high[axis])) {
+                if (d.is_zero() &&
+                    (ray.origin[axis].high() < box.low[axis] || ray.origin[axis].low() > box.high[axis])) {
                     return false;
                 }
                 continue;

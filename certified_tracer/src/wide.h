@@ -15,7 +15,7 @@ namespace certified {
 // comes to.
 template <std::size_t limbs>
 class Wide {
-  public:
+ public:
     static constexpr int bits = 64 * static_cast<int>(limbs);
 
     constexpr Wide() = default;
@@ -108,8 +108,9 @@ class Wide {
         quotient.exponent_ -= y.exponent_;
         const int sign = x.sign_ * y.sign_;
         const Wide wanted = x.size(), all = y.size();
-        return settled(sign, quotient, [&](const Wide& q) { return -(-q * all) >= wanted; },
-                       [&](const Wide& q) { return q * all <= wanted; });
+        return settled(
+            sign, quotient, [&](const Wide& q) { return -(-q * all) >= wanted; },
+            [&](const Wide& q) { return q * all <= wanted; });
     }
 
     // Of what is not negative. Newton's iteration for 1/sqrt(x), and the same proof.
@@ -132,7 +133,7 @@ class Wide {
     // times 2^power
     Wide scaled(std::int64_t power) const { return with_exponent(exponent_ + power); }
 
-  private:
+ private:
     __extension__ using Long = unsigned __int128;
 
     Wide size() const {
@@ -166,8 +167,8 @@ class Wide {
         return x.sign_ == 0 ? 0 : x.sign_ * compare_sizes(x, y);
     }
 
-    // From twice as many limbs, or one more, of which the first may begin with zeros; `more`: the true size is above it,
-    // by less than its last bit. Away from 0 if positive, and toward 0 if negative.
+    // From twice as many limbs, or one more, of which the first may begin with zeros; `more`: the true size is above
+    // it, by less than its last bit. Away from 0 if positive, and toward 0 if negative.
     template <std::size_t count>
     static Wide rounded(int sign, std::int64_t exponent, const std::array<std::uint64_t, count>& size, bool more) {
         std::size_t top = count;

@@ -96,7 +96,9 @@ def certify(
     height, width = settings.height, settings.width
     rows, columns = np.mgrid[:height, :width]
     pixels = np.stack([columns, rows], axis=-1).reshape(-1, 2).astype(np.int32)
-    last = len(certified_tracer.digits) - 1 if ulps == 0 else 1  # more digits tell nothing of numbers that are not known
+    last = (
+        len(certified_tracer.digits) - 1 if ulps == 0 else 1
+    )  # more digits tell nothing of numbers that are not known
     seconds = {"build": time.perf_counter() - started}
     found = certified_tracer.certify(built, pixels, first, last, settings.threads or available_cores(), progress)
     seconds["certify"] = time.perf_counter() - started - seconds["build"]

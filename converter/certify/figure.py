@@ -28,6 +28,7 @@ _COLORS = np.array(
     np.float32,
 )
 """Of a certified pixel, and of each reason."""
+_WRONG = np.array((1, 0.15, 0.1), np.float32)
 assert len(_COLORS) == len(REASONS) + 1
 
 
@@ -42,7 +43,7 @@ def draw_certificate(
     wrong = np.zeros(certificate.undecided.shape, np.bool_)
     for miss in misses:
         wrong |= miss > 0
-    judged = np.where(wrong[..., None], np.float32([1, 0.15, 0.1]), np.float32(0.25) * picture)
+    judged = np.where(wrong[..., None], _WRONG, np.float32(0.25) * picture)
     height = len(picture)
     gap = np.ones((height, _GAP, 3), np.float32)
     whole = np.concatenate([picture, gap, _COLORS[certificate.undecided], gap, judged], axis=1).astype(np.float32)

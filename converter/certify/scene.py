@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from fractions import Fraction
-from typing import TYPE_CHECKING, assert_never
+from typing import TYPE_CHECKING, Any, assert_never
 
 import numpy as np
 from numpy.typing import NDArray
@@ -222,19 +222,21 @@ def _lies_on(kind: int, surface: tuple[float, ...], point: Vector) -> bool:
     return bool(abs(true) <= _ROUNDING * size)
 
 
-def _value(kind: int, surface: Sequence[float | Fraction], p: Sequence[float | Fraction]) -> tuple[float, float]:
-    """What is 0 on a surface, and the sizes of its terms, each as often as it has factors of the file."""
+def _value(kind: int, surface: Sequence[Any], p: Sequence[Any]) -> tuple[Any, Any]:
+    """What is 0 on a surface, and the sizes of its terms, each as often as it has factors of the file; in doubles or
+    fractions.
+    """
     if kind == SPHERE:
         *center, radius = surface
         arm = [(x - c) for x, c in zip(p, center, strict=True)]
         reach = sum(abs(x) + abs(c) for x, c in zip(p, center, strict=True)) + radius
-        return sum(x * x for x in arm) - radius * radius, 2 * radius * reach  # type: ignore[return-value]
+        return sum(x * x for x in arm) - radius * radius, 2 * radius * reach
     if kind == PLANE:
         terms = [surface[k] * p[k] for k in range(3)]
-        return sum(terms) + surface[3], 2 * sum(map(abs, terms)) + abs(surface[3])  # type: ignore[return-value]
+        return sum(terms) + surface[3], 2 * sum(map(abs, terms)) + abs(surface[3])
     x, y, z = p
     squares = [x * x, y * y, z * z, x * y, x * z, y * z]
     second = [q * s for q, s in zip(surface, squares, strict=False)]
     first = [q * s for q, s in zip(surface[6:], p, strict=False)]
     size = 3 * sum(map(abs, second)) + 2 * sum(map(abs, first)) + abs(surface[9])
-    return sum(second) + sum(first) + surface[9], size  # type: ignore[return-value]
+    return sum(second) + sum(first) + surface[9], size

@@ -36,7 +36,7 @@ def parser() -> Parser:
         "digits. A pixel is certified where each decision is certain and its colour rounds to one byte; of the others\n"
         "the reason is told. Then it says which certified pixels other methods get wrong.\n"
         "Exit status 0: they get none wrong, 1: they do.",
-        "whitted certify figure1.in 800 600 --png certificate.png\n  whitted certify figure1.in --widen 1 --method none",
+        "whitted certify figure1.in 800 600 --png out.png\n  whitted certify figure1.in --widen 1 --method none",
     )
     result.add_argument("scene", type=Path, metavar="SCENE", help="the scene")
     add_size(result)
@@ -117,6 +117,7 @@ def run(arguments: argparse.Namespace) -> int:
 def _levels(rendering: Any) -> "NDArray[np.uint8]":
     """The bytes that a picture is written with."""
     import numpy as np
+
     from native_tracer import quantize
 
     shape = rendering.height, rendering.width, 3
@@ -166,8 +167,7 @@ def _figures(certificate: "Certificate", misses: "dict[str, NDArray[np.int16]]")
                 "wrong": int((miss > 0).sum()),
                 "largest": int(miss.max()),
                 "pixels": [
-                    {"x": int(x), "y": int(y), "levels": int(miss[y, x])}
-                    for y, x in zip(*miss.nonzero(), strict=True)
+                    {"x": int(x), "y": int(y), "levels": int(miss[y, x])} for y, x in zip(*miss.nonzero(), strict=True)
                 ][:1000],
             }
             for name, miss in misses.items()
