@@ -7,7 +7,6 @@
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
-#include <cfenv>
 #include <cstddef>
 #include <stdexcept>
 #include <string>
@@ -18,6 +17,7 @@
 #include "elementary.h"
 #include "prepared.h"
 #include "scene.h"
+#include "upward.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -159,23 +159,15 @@ std::pair<double, double> miss_of(const std::string& function, const std::vector
 std::pair<double, double> miss(const std::string& function, const std::vector<Given>& given, const Given& truth,
                                int rung) {
     const std::vector<Number> arguments = numbers(given);
-    const int before = std::fegetround();
-    std::fesetround(FE_UPWARD);
-    std::pair<double, double> result;
-    bool decided = true;
+    const Upward upward;
     try {
-        result = rung == 0   ? miss_of<double>(function, arguments, number(truth))
-                 : rung == 1 ? miss_of<Wide<2>>(function, arguments, number(truth))
-                 : rung == 2 ? miss_of<Wide<4>>(function, arguments, number(truth))
-                             : miss_of<Wide<8>>(function, arguments, number(truth));
+        return rung == 0   ? miss_of<double>(function, arguments, number(truth))
+               : rung == 1 ? miss_of<Wide<2>>(function, arguments, number(truth))
+               : rung == 2 ? miss_of<Wide<4>>(function, arguments, number(truth))
+                           : miss_of<Wide<8>>(function, arguments, number(truth));
     } catch (const Undecided&) {
-        decided = false;
-    }
-    std::fesetround(before);
-    if (!decided) {
         throw std::domain_error("undecided");
     }
-    return result;
 }
 
 }  // namespace

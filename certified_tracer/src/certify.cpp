@@ -10,22 +10,11 @@
 #include <thread>
 
 #include "tracer.h"
+#include "upward.h"
 
 namespace certified {
 
 namespace {
-
-// The processor rounds upward while there is one.
-class Upward {
- public:
-    Upward() : before_(std::fegetround()) { std::fesetround(FE_UPWARD); }
-    ~Upward() { std::fesetround(before_); }
-    Upward(const Upward&) = delete;
-    Upward& operator=(const Upward&) = delete;
-
- private:
-    int before_;
-};
 
 constexpr int exceptions = FE_OVERFLOW | FE_INVALID | FE_DIVBYZERO;
 
