@@ -1,6 +1,6 @@
 """Prints the table of the README on certified pixels: seconds, what is undecided and why, and what methods get wrong.
 
-    .venv/bin/python benchmarks/certify.py [--size W H] [--methods NAME,...] [SCENE...]
+.venv/bin/python benchmarks/certify.py [--size W H] [--methods NAME,...] [SCENE...]
 """
 
 import argparse
