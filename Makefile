@@ -24,8 +24,8 @@ NATIVE_TESTS := $(wildcard tests/test_native_*.py tests/test_bvh.py tests/test_h
 TESTS ?= $(NATIVE_TESTS) tests/test_library.py tests/test_parser.py tests/test_compare.py
 
 BIN := .venv/bin
-SOURCES := pyproject.toml CMakeLists.txt $(wildcard native_tracer/src/*.* native_tracer/src/*/* student_tracer/src/*)
-CPP := $(wildcard native_tracer/src/*/*.cpp native_tracer/src/*/*.h student_tracer/src/*.cpp student_tracer/src/*.h)
+SOURCES := pyproject.toml CMakeLists.txt $(wildcard native_tracer/src/*.* native_tracer/src/*/* student_tracer/src/* certified_tracer/src/*)
+CPP := $(wildcard native_tracer/src/*/*.cpp native_tracer/src/*/*.h student_tracer/src/*.cpp student_tracer/src/*.h certified_tracer/src/*.cpp certified_tracer/src/*.h)
 
 .PHONY: render test check figures format films stability mutants fuzz wheel docs sanitize coverage clean
 .DELETE_ON_ERROR:

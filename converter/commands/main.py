@@ -8,6 +8,7 @@ COMMANDS = {
     "animate": "draw a film of a scene whose numbers change with time",
     "convert": "write a scene as files that Mitsuba 3 or POV-Ray loads",
     "compare": "draw a scene by two methods, or take two images, and tell the differences",
+    "certify": "prove each pixel, or say why not, and name those that methods get wrong",
     "why": "name the mistakes that lead from a scene to a picture",
     "grade": "run programs of students on scenes, and name their mistakes",
     "serve": "open a page for writing a scene beside its picture",

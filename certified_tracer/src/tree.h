@@ -1,0 +1,144 @@
+// A tree of boxes around bodies (Kay and Kajiya 1986), whose tests never miss a body that a ray may meet.
+
+#pragma once
+
+#include <algorithm>
+#include <array>
+#include <cmath>
+#include <limits>
+#include <numeric>
+#include <vector>
+
+#include "interval.h"
+#include "scene.h"
+
+namespace certified {
+
+// A ray in doubles, which encloses another.
+struct DoubleRay {
+    std::array<Interval<double>, 3> origin, direction, inverse;
+    std::array<int, 3> sign;  // of the direction's coordinates; 0 where it is not certain
+};
+
+class Tree {
+ public:
+    explicit Tree(const Scene& scene) {
+        for (std::size_t i = 0; i < scene.bodies.size(); ++i) {
+            const Body& body = scene.bodies[i];
+            const Box box{body.low, body.high};
+            if (std::isfinite(box.low[0] + box.high[0] + box.low[1] + box.high[1] + box.low[2] + box.high[2])) {
+                boxes_.push_back(box);
+                bodies_.push_back(static_cast<int>(i));
+            } else {
+                boundless_.push_back(static_cast<int>(i));
+            }
+        }
+        order_.resize(bodies_.size());
+        std::iota(order_.begin(), order_.end(), std::size_t(0));
+        if (!order_.empty()) {
+            build(0, order_.size());
+        }
+    }
+
+    // Calls visit(body, near) for every body that the ray may meet before `reach()`; near: not before that distance.
+    template <typename Visit, typename Reach>
+    void search(const DoubleRay& ray, const Visit& visit, const Reach& reach) const {
+        for (const int body : boundless_) {
+            visit(body, 0.0);
+        }
+        if (nodes_.empty()) {
+            return;
+        }
+        std::array<int, 64> stack;
+        int depth = 0;
+        stack[0] = 0;
+        while (depth >= 0) {
+            const Node& node = nodes_[static_cast<std::size_t>(stack[static_cast<std::size_t>(depth--)])];
+            double near;
+            if (!may_meet(ray, node.box, reach(), near)) {
+                continue;
+            }
+            if (node.body >= 0) {
+                visit(node.body, near);
+                continue;
+            }
+            stack[static_cast<std::size_t>(++depth)] = node.second;
+            stack[static_cast<std::size_t>(++depth)] = node.second - node.left_size;
+        }
+    }
+
+    std::size_t size() const { return nodes_.size(); }
+
+ private:
+    struct Box {
+        std::array<double, 3> low, high;
+    };
+
+    struct Node {
+        Box box;
+        int body = -1;
+        int second = 0, left_size = 0;
+    };
+
+    // In halves by the longest axis: few bodies are searched.
+    int build(std::size_t first, std::size_t last) {
+        const auto index = static_cast<int>(nodes_.size());
+        nodes_.emplace_back();
+        Box box = boxes_[order_[first]];
+        for (std::size_t i = first + 1; i < last; ++i) {
+            const Box& other = boxes_[order_[i]];
+            for (std::size_t axis = 0; axis < 3; ++axis) {
+                box.low[axis] = std::min(box.low[axis], other.low[axis]);
+                box.high[axis] = std::max(box.high[axis], other.high[axis]);
+            }
+        }
+        int body = -1, second = 0, left_size = 0;
+        if (last - first == 1) {
+            body = bodies_[order_[first]];
+        } else {
+            std::size_t axis = 0;
+            for (std::size_t k = 1; k < 3; ++k) {
+                axis = box.high[k] - box.low[k] > box.high[axis] - box.low[axis] ? k : axis;
+            }
+            const std::size_t half = (first + last) / 2;
+            const auto at = [&](std::size_t i) { return order_.begin() + static_cast<std::ptrdiff_t>(i); };
+            std::nth_element(at(first), at(half), at(last), [&](std::size_t i, std::size_t j) {
+                return boxes_[i].low[axis] + boxes_[i].high[axis] < boxes_[j].low[axis] + boxes_[j].high[axis];
+            });
+            const int left = build(first, half);
+            second = build(half, last);
+            left_size = second - left;
+        }
+        nodes_[static_cast<std::size_t>(index)] = {box, body, second, left_size};
+        return index;
+    }
+
+    // Slabs; where a direction's sign is not certain, that axis excludes nothing.
+    static bool may_meet(const DoubleRay& ray, const Box& box, double reach, double& near) {
+        double leave = reach;
+        near = 0;
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const int sign = ray.sign[axis];
+            if (sign == 0) {
+                const Interval<double>& d = ray.direction[axis];
+                if (d.is_zero() &&
+                    (ray.origin[axis].high() < box.low[axis] || ray.origin[axis].low() > box.high[axis])) {
+                    return false;
+                }
+                continue;
+            }
+            const double entry = sign > 0 ? box.low[axis] : box.high[axis];
+            const double exit = sign > 0 ? box.high[axis] : box.low[axis];
+            near = std::max(near, ((Interval<double>(entry) - ray.origin[axis]) * ray.inverse[axis]).low());
+            leave = std::min(leave, ((Interval<double>(exit) - ray.origin[axis]) * ray.inverse[axis]).high());
+        }
+        return !(near > leave);
+    }
+
+    std::vector<Box> boxes_;
+    std::vector<int> bodies_, boundless_;
+    std::vector<std::size_t> order_;
+    std::vector<Node> nodes_;
+};
+
+}  // namespace certified

@@ -1,0 +1,115 @@
+"""What is proven of a picture's bytes."""
+
+import time
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from converter.certify.scene import certified_scene
+from converter.renderers.base import Progress, RendererUnavailable
+from converter.scene.model import Scene
+from converter.scene.settings import Settings
+
+REASONS = {
+    "byte": "its colour lies between two levels",
+    "hit": "which body a ray meets, or whether it does",
+    "plane": "which surface of a body it meets",
+    "tile": "on which tile of a checker it ends",
+    "texel": "on which texel of an image it ends",
+    "shadow": "whether a light is hidden",
+    "facing": "whether a light is before a surface or behind it",
+    "reflection": "whether a ray is reflected totally",
+    "cutoff": "whether a ray weighs enough to be followed",
+    "division": "what is divided by may be 0",
+    "range": "a number is beyond those of a double",
+}
+"""Why a pixel may be undecided."""
+
+
+@dataclass(frozen=True, slots=True)
+class Certificate:
+    """What is proven of a picture.
+
+    Attributes:
+        low, high: (height, width, 3) uint8, each certified byte; where a colour lies so near the edge between two
+            levels that storing it as a float may take it over, `high` is one more, and either is right.
+        undecided: (height, width) uint8, 0 where a pixel is certified, else the reason's place among `REASONS`, from 1.
+        rung: (height, width) uint8, of how many digits were needed, an index of `digits`.
+        tied: (height, width) bool, where the format's rule for ties has decided something that is equal to 80 digits.
+        digits: binary digits of each rung. seconds: by rung, and for the scene's preparation.
+
+    """
+
+    low: NDArray[np.uint8]
+    high: NDArray[np.uint8]
+    undecided: NDArray[np.uint8]
+    rung: NDArray[np.uint8]
+    tied: NDArray[np.bool_]
+    digits: tuple[int, ...]
+    seconds: dict[str, float]
+
+    @property
+    def certified(self) -> NDArray[np.bool_]:
+        """(height, width), which pixels are."""
+        result: NDArray[np.bool_] = self.undecided == 0
+        return result
+
+    def counts(self) -> dict[str, int]:
+        """Pixels by the reason why they are undecided, without reasons that do not occur."""
+        found = np.bincount(self.undecided.ravel(), minlength=len(REASONS) + 1)
+        return {name: int(count) for name, count in zip(REASONS, found[1:], strict=True) if count}
+
+    def misses(self, levels: NDArray[np.uint8]) -> NDArray[np.int16]:
+        """(height, width), by how many levels bytes are off where they are certified: their largest channel's."""
+        low, high, found = (np.asarray(x, np.int16) for x in (self.low, self.high, levels))
+        off = np.maximum(low - found, found - high).max(axis=2).clip(0)
+        result: NDArray[np.int16] = np.where(self.certified, off, 0)
+        return result
+
+
+def certify(
+    scene: Scene, settings: Settings, ulps: float = 0.0, progress: Progress | None = None, first: int = 0
+) -> Certificate:
+    """Certify the pixels of `scene`, drawn with `settings`.
+
+    Args:
+        scene: the scene; its numbers are the decimal numbers that a file has for them.
+        settings: the picture's.
+        ulps: every number of the scene that is not whole is known to so many units in the last place of a double only.
+        progress: called now and then.
+        first: the rung to begin with.
+
+    Raises:
+        RendererUnavailable: the module is not built, or the scene is sampled.
+        ValueError: a texture cannot be read.
+
+    """
+    try:
+        import certified_tracer
+    except ImportError as error:
+        raise RendererUnavailable(f"the certifying tracer is not built ({error}); `make` builds it") from None
+    from converter.renderers.native import available_cores
+
+    started = time.perf_counter()
+    built = certified_scene(scene, settings, ulps)
+    height, width = settings.height, settings.width
+    rows, columns = np.mgrid[:height, :width]
+    pixels = np.stack([columns, rows], axis=-1).reshape(-1, 2).astype(np.int32)
+    last = (
+        len(certified_tracer.digits) - 1 if ulps == 0 else 1
+    )  # more digits tell nothing of numbers that are not known
+    seconds = {"build": time.perf_counter() - started}
+    found = certified_tracer.certify(built, pixels, first, last, settings.threads or available_cores(), progress)
+    seconds["certify"] = time.perf_counter() - started - seconds["build"]
+    names = certified_tracer.reasons
+    order = np.array([0] + [list(REASONS).index(name) + 1 for name in names[1:]], np.uint8)
+    return Certificate(
+        found["low"].reshape(height, width, 3),
+        found["high"].reshape(height, width, 3),
+        order[found["reason"]].reshape(height, width),
+        found["rung"].reshape(height, width),
+        found["tied"].reshape(height, width).astype(np.bool_),
+        tuple(certified_tracer.digits),
+        seconds,
+    )

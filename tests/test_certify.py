@@ -1,0 +1,134 @@
+"""Certified pixels: functions against many digits, pixels against a tracer without rounding, and faults noticed."""
+
+import json
+import random
+from dataclasses import replace
+from decimal import Decimal, localcontext
+from fractions import Fraction
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+import certified_tracer
+from converter.certify.certificate import certify
+from converter.certify.numbers import number
+from converter.commands.main import main
+from converter.renderers.base import EffectUnavailable
+from converter.renderers.native import NativeRenderer
+from converter.scene.parser import load_scene
+from converter.scene.settings import Settings
+from converter.studies.exact.arithmetic import Decimals, Undecided
+from converter.studies.exact.tracer import ExactTracer
+from native_tracer import quantize
+
+SCENES = Path(__file__).parent.parent / "scenes"
+RUNGS = range(len(certified_tracer.digits))
+
+
+def _truth(value: Decimal) -> tuple[list[float], float]:
+    """A number of 160 digits as doubles."""
+    rest, parts = Fraction(value), []
+    for _ in range(10):
+        parts.append(float(rest))
+        rest -= Fraction(parts[-1])
+    return parts, abs(float(rest)) + abs(float(value)) * 1e-150
+
+
+def _check(function: str, arguments: list[float], truth: Decimal, lost: int) -> None:
+    """On every rung the interval holds the truth, and is as narrow as its digits allow, but for some `lost` ones."""
+    for rung in RUNGS:
+        low, high = certified_tracer.miss(function, [number(x) for x in arguments], _truth(truth), rung)
+        assert low <= 0 <= high, (function, arguments, rung)
+        digits = min(certified_tracer.digits[rung], 430)
+        assert high - low <= abs(float(truth)) * 2.0 ** (lost - digits) + 1e-300, (function, arguments, rung)
+
+
+@pytest.mark.parametrize("seed", range(3))
+def test_enclosures_hold_the_truth(seed: int) -> None:
+    rng = random.Random(seed)
+    with localcontext() as context:
+        context.prec = 160
+        for _ in range(8):
+            x, y = (round(rng.uniform(-3, 3), 12) for _ in range(2))
+            a, b = Decimal(repr(x)), Decimal(repr(y))
+            size = max(abs(x), abs(y), 1e-3)
+            if abs(x + y) > 0.1 and abs(x - y) > 0.1:
+                _check("+", [x, y], a + b, 8 + int(size / 0.1).bit_length())
+                _check("-", [x, y], a - b, 8 + int(size / 0.1).bit_length())
+            _check("*", [x, y], a * b, 8)
+            _check("/", [x, y], a / b, 12)
+            _check("sqrt", [abs(x)], abs(a).sqrt(), 12)
+            _check("exp", [-abs(x)], (-abs(a)).exp(), 16)
+            share = round(rng.uniform(0.01, 0.9), 9)
+            log = Decimal(repr(share)).ln()
+            _check("log", [share], log, 16)
+            _check("power", [share, abs(x)], (abs(a) * log).exp(), 20)
+            _check("power", [share, 20.0], Decimal(repr(share)) ** 20, 12)
+
+
+@pytest.mark.parametrize("degrees", [0.5, 32.0, 45.3, 90.0, 120.7, 179.0])
+def test_tangent_of_half_an_angle(degrees: float) -> None:
+    numbers = Decimals()
+    with numbers.context():
+        truth = numbers.tangent(Decimal(repr(degrees)))
+    _check("tan_half", [degrees], truth, 40)
+
+
+@pytest.mark.parametrize(
+    "name", ["figure1", "whitted", "tiles", "nested", "quadrics", "lens", "underwater", "room", "pawns"]
+)
+@pytest.mark.parametrize("changes", [{}, {"pixel": "center", "specular": "blinn"}], ids=["usual", "other"])
+def test_pixels_are_those_of_a_tracer_without_rounding(name: str, changes: dict[str, str]) -> None:
+    scene = load_scene(SCENES / f"{name}.in")
+    settings = replace(Settings(width=40, height=30, max_depth=4), **changes)
+    certificate = certify(scene, settings)
+    tracer = ExactTracer(scene, settings)
+    rng = random.Random(name)
+    judged = 0
+    for _ in range(12):
+        x, y = rng.randrange(40), rng.randrange(30)
+        try:
+            color = tracer.pixel(x, y).color
+        except Undecided:
+            continue
+        if certificate.certified[y, x]:
+            judged += 1
+            for k in range(3):
+                level = 255 * min(max(color[k], 0.0), 1.0) + 0.5 + 1e-4
+                assert int(certificate.low[y, x, k]) - 1e-5 <= level <= int(certificate.high[y, x, k]) + 1 + 1e-5
+    assert judged > 8
+
+
+@pytest.mark.parametrize("name", sorted(file.stem for file in SCENES.glob("*.in") if file.stem != "dice"))
+def test_native_gets_no_certified_pixel_wrong(name: str) -> None:
+    scene, settings = load_scene(SCENES / f"{name}.in"), Settings(width=24, height=18)
+    certificate = certify(scene, settings)
+    levels = np.frombuffer(quantize(NativeRenderer().render(scene, settings).pixels), np.uint8).reshape(18, 24, 3)
+    assert not certificate.misses(levels).any()
+    assert certificate.certified.mean() > 0.99
+    assert (certificate.misses(levels ^ 1) > 0).mean() > 0.95  # a level beside is noticed
+
+
+def test_what_numbers_of_some_digits_do_not_determine() -> None:
+    scene, settings = load_scene(SCENES / "whitted.in"), Settings(width=40, height=30)
+    known, little = certify(scene, settings, 1), certify(scene, settings, 2.0**40)
+    assert known.certified.mean() > 0.9
+    assert little.certified.sum() < known.certified.sum()
+
+
+def test_a_sampled_scene_is_refused() -> None:
+    with pytest.raises(EffectUnavailable, match="does not draw"):
+        certify(load_scene(next((SCENES / "sampled").glob("*.in"))), Settings(width=4, height=3))
+
+
+def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    scene, png, out = str(SCENES / "figure1.in"), tmp_path / "c.png", tmp_path / "c.json"
+    arguments = ["certify", scene, "40", "30", "--method", "native", "-q", "--png", str(png), "--json", str(out)]
+    assert main(arguments) == 0
+    assert "certified: 1200 of 1200 pixels" in capsys.readouterr().out
+    figures = json.loads(out.read_text())
+    assert figures["certified"] == 1200 and figures["methods"]["native"]["wrong"] == 0
+    assert png.stat().st_size > 0
+    assert main(["certify", scene, "40", "30", "--method", "native:max_depth=0", "-q"]) == 1
+    assert "are wrong" in capsys.readouterr().out
