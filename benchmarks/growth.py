@@ -130,7 +130,7 @@ def in_process(scene: Path, renderer: str, arguments: argparse.Namespace) -> Fou
 def draw(file: Path, renderer: str, size: tuple[int, int], runs: int) -> Found:
     """Load and draw a scene; the least seconds by stage, the number of objects and rays, and the peak memory in MiB."""
     # Late: the process that prints the tables stays small, for its own peak is handed down to those that it starts.
-    from converter.scene.loading import load
+    from converter.scene.loading import load_scene
     from converter.scene.settings import Settings
 
     drawer = _renderers()[renderer]()
@@ -138,7 +138,7 @@ def draw(file: Path, renderer: str, size: tuple[int, int], runs: int) -> Found:
     rays = 0
     for _ in range(runs):
         started = time.perf_counter()
-        scene = load(file)
+        scene = load_scene(file)
         loaded = time.perf_counter() - started
         rendering = drawer.render(scene, Settings(*size))
         for stage, value in {"load": loaded, **rendering.seconds}.items():

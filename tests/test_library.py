@@ -65,6 +65,15 @@ def test_compares():
         whitted.compare(picture, whitted.render(scene, 32, 24))
 
 
+def test_certifies():
+    scene = whitted.load_scene(FIGURE)
+    certificate = whitted.certify(scene, 16, 12)
+    assert certificate.certified.all()
+    levels = np.asarray(np.clip(whitted.render(scene, 16, 12), 0, 1) * 255 + 0.5).astype(np.uint8)
+    assert not certificate.misses(levels).any()
+    assert certificate.misses(levels ^ 4).all()
+
+
 def test_tells_what_is_wrong():
     scene = whitted.load_scene(FIGURE)
     with pytest.raises(ValueError, match="there is no method 'natve'"):

@@ -11,7 +11,8 @@ from hypothesis import strategies as st
 from strategies import scenes
 
 from converter.scene.errors import SceneError
-from converter.scene.loading import load, scan_text
+from converter.scene import loading
+from converter.scene.loading import scan_text
 from converter.scene.model import Polyhedron, Scene, Sphere, Texmap
 from converter.scene.parser import load_scene, parse_scene
 from converter.scene.writer import write_scene
@@ -129,11 +130,11 @@ def test_whoever_loads_gets_the_parsers_message(tmp_path: Path, change: tuple[st
     with pytest.raises(SceneError) as told:
         load_scene(file)
     with pytest.raises(SceneError) as loaded:
-        load(file)
+        loading.load_scene(file)
     assert str(loaded.value) == str(told.value)
 
 
 def test_a_scene_that_nobody_can_read_is_told(tmp_path: Path) -> None:
     for file in (tmp_path / "none.in", tmp_path):
         with pytest.raises(SceneError):
-            load(file)
+            loading.load_scene(file)

@@ -12,24 +12,29 @@ A notebook shows pictures and comparisons by themselves.
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
+    from converter.certify.certificate import Certificate
     from converter.renderers.base import RendererUnavailable
     from converter.scene.errors import SceneError
+    from converter.scene.loading import load_scene
     from converter.scene.model import Scene
-    from converter.scene.parser import load_scene, load_text
+    from converter.scene.parser import load_text
     from whitted.comparing import Comparison, compare
     from whitted.drawing import Stopped, methods, render
     from whitted.picture import Picture, load_picture
+    from whitted.proving import certify
 
 _HOMES = {
+    "Certificate": "converter.certify.certificate",
     "Comparison": "whitted.comparing",
     "Picture": "whitted.picture",
     "RendererUnavailable": "converter.renderers.base",
     "Scene": "converter.scene.model",
     "SceneError": "converter.scene.errors",
     "Stopped": "whitted.drawing",
+    "certify": "whitted.proving",
     "compare": "whitted.comparing",
     "load_picture": "whitted.picture",
-    "load_scene": "converter.scene.parser",
+    "load_scene": "converter.scene.loading",
     "load_text": "converter.scene.parser",
     "methods": "whitted.drawing",
     "render": "whitted.drawing",
@@ -37,12 +42,14 @@ _HOMES = {
 """The module in which each name is."""
 
 __all__ = [
+    "Certificate",
     "Comparison",
     "Picture",
     "RendererUnavailable",
     "Scene",
     "SceneError",
     "Stopped",
+    "certify",
     "compare",
     "load_picture",
     "load_scene",

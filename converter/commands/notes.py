@@ -31,7 +31,7 @@ def load(path: str | Path) -> Scene:
         from native_tracer import keep_reserve
 
         keep_reserve()
-    return loading.load(path)
+    return loading.load_scene(path)
 
 
 def load_with_notices(

@@ -17,7 +17,7 @@ LONGEST = 1 << 28
 """Bytes of a file that is scanned."""
 
 
-def load(path: str | Path) -> Scene:
+def load_scene(path: str | Path) -> Scene:
     """The scene in the file `path`, with textures that can be opened and half-spaces that meet.
 
     Raises:
@@ -28,9 +28,9 @@ def load(path: str | Path) -> Scene:
         scene = _scanned(file)
     if scene is not None:
         return scene
-    from converter.scene.parser import load_scene  # late: most scenes need none of it
+    from converter.scene import parser  # late: most scenes need none of it
 
-    return load_scene(file)
+    return parser.load_scene(file)
 
 
 def _scanned(file: Path) -> Scene | None:
