@@ -10,8 +10,8 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 from strategies import scenes
 
-from converter.scene.errors import SceneError
 from converter.scene import loading
+from converter.scene.errors import SceneError
 from converter.scene.loading import scan_text
 from converter.scene.model import Polyhedron, Scene, Sphere, Texmap
 from converter.scene.parser import load_scene, parse_scene
