@@ -155,7 +155,7 @@ class _Tracer:
         mirror_throughput, mirrors, through_throughput, refracts = integrator.followed(
             throughput, dr.opaque(mi.UInt32, depth, count), hit, finish
         )
-        local, _ = integrator.local_radiance(ray, hit, finish, pigment, sample, path)
+        local, *_ = integrator.local_radiance(ray, hit, finish, pigment, sample, path)
         dr.eval(through, mirrored, total, local, mirror_throughput, mirrors, through_throughput, refracts)
 
         local_colors, background = _rows(local, count), _rows(integrator.background, 1)[0]

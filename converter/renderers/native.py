@@ -73,7 +73,8 @@ class NativeRenderer:
         native_scene = build_scene(scene, needs)
         image = tracer.Image(settings.width, settings.height)
         passes = _passes(needs.samples)
-        sums = _pass_sums(tracer, settings, start) if len(passes) > 1 else None
+        in_passes = len(passes) > 1 or settings.crop is not None  # only then there are masks
+        sums = _pass_sums(tracer, settings, start) if in_passes else None
         built = time.perf_counter()
 
         def rendering() -> Rendering:

@@ -228,9 +228,7 @@ class Whitted(mi.SamplingIntegrator):
         else:
             self._tracer = MitsubaSurfaces(scene, self.surfaces, primitives, self.intersections)
         try:
-            # Loops are recorded once, and not twice at each level: kernels are no slower for it.
-            with dr.scoped_set_flag(dr.JitFlag.OptimizeLoops, False):
-                yield
+            yield
         finally:
             self._tracer = None
 

@@ -41,8 +41,8 @@ struct BoxSpace {
             return;
         }
         const Box& all = tree.nodes[0].box;
-        const Vector<Real> low = vector_of<Real>(all.low);
-        const Vector<Real> high = vector_of<Real>(all.high);
+        const Vector<Real> low{finite(all.low[0]), finite(all.low[1]), finite(all.low[2])};
+        const Vector<Real> high{finite(all.high[0]), finite(all.high[1]), finite(all.high[2])};
         center = Real(0.5) * low + Real(0.5) * high;
         const Vector<Real> arm = high - center;
         const Real size = std::max({arm.x, arm.y, arm.z});
@@ -56,12 +56,19 @@ struct BoxSpace {
         const Real middle[3] = {center.x, center.y, center.z};
         CoarseBox<Real> result;
         for (std::size_t k = 0; k < 3; ++k) {
-            const Real low = (static_cast<Real>(exact.low[k]) - middle[k]) * unit;
-            const Real high = (static_cast<Real>(exact.high[k]) - middle[k]) * unit;
+            const Real low = (finite(exact.low[k]) - middle[k]) * unit;
+            const Real high = (finite(exact.high[k]) - middle[k]) * unit;
             result.low[k] = std::nextafter(static_cast<Number>(low), -infinity);
             result.high[k] = std::nextafter(static_cast<Number>(high), infinity);
         }
         return result;
+    }
+
+ private:
+    // The nearest number that is finite: beyond, nothing is hit.
+    static Real finite(double corner) {
+        constexpr Real most = std::numeric_limits<Real>::max();
+        return std::clamp(static_cast<Real>(corner), -most, most);
     }
 };
 
