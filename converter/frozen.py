@@ -22,20 +22,22 @@ class _Field:
         self.default, self.factory, self.compare = default, default_factory, compare
 
 
+def _dataclass(*, frozen: bool, slots: bool, weakref_slot: bool = False, eq: bool = True) -> Callable[[type], type]:
+    """Make a class one of frozen records with slots."""
+    assert frozen and slots
+    return lambda cls: _made(cls, weakref_slot, eq)
+
+
+def _replace(record: Any, **changes: Any) -> Any:
+    """A copy with other values in some fields."""
+    kept = {name: getattr(record, name) for name in record.__slots__ if name not in ("__weakref__", *changes)}
+    return type(record)(**kept, **changes)
+
+
 if TYPE_CHECKING:
     from dataclasses import dataclass, field, replace
 else:
-    field = _Field
-
-    def dataclass(*, frozen: bool, slots: bool, weakref_slot: bool = False, eq: bool = True) -> Callable[[type], type]:
-        """Make a class one of frozen records with slots."""
-        assert frozen and slots
-        return lambda cls: _made(cls, weakref_slot, eq)
-
-    def replace(record: Any, **changes: Any) -> Any:
-        """A copy with other values in some fields."""
-        kept = {name: getattr(record, name) for name in record.__slots__ if name not in ("__weakref__", *changes)}
-        return type(record)(**kept, **changes)
+    dataclass, field, replace = _dataclass, _Field, _replace
 
 
 class _Described:
