@@ -24,9 +24,9 @@ import numpy as np
 from tables import print_table
 
 import native_tracer
-from converter.commands.adapting import Adapting
 from converter.compare.classes import CLASSES, Class, explain, less_exact
 from converter.compare.metrics import compare_pixels
+from converter.renderers.adaptive import Adapting
 from converter.renderers.base import Renderer, Rendering
 from converter.renderers.methods import METHODS
 from converter.renderers.mitsuba import MitsubaRenderer
@@ -52,7 +52,7 @@ RANDOM_SCENES = 200
 MOST_EXPLAINED = 100
 """Pixels of a picture whose rays are compared: of glass csgs some take a second."""
 POVRAY = "POV-Ray 3.7, its trace time"
-LIMITS = (4, 16, 32)
+LIMITS = (8, 24, 40)
 """Of adaptive sampling, in levels of 255."""
 MEASURED = 1 / 16
 """The share of pixels in which its errors are measured: 256 samples take long."""
@@ -224,26 +224,28 @@ def _samples(counts: Sequence[int], width: int, height: int) -> Iterator[list[st
 def sampled() -> None:
     """The scenes in which something is random: pixels that disagree at equal samples, and what a sample costs."""
     print("pixels that differ by more than 1/255 from native double: Mitsuba's of 160 x 120, long double's of 80 x 60;")
-    print(f"microseconds a sample, medians of {FEW_RUNS} runs in turn")
-    print(f"{'':<14}{'samples':>8}{'Mitsuba':>9}{'long double':>13}{'native us':>11}{'Mitsuba us':>12}{'ratio':>7}")
+    print(f"microseconds a sample, medians of {FEW_RUNS} runs in turn; 1, 16 and 256 samples")
+    heads = ["", "Mitsuba", "long double", "native, us a sample", "Mitsuba, us a sample", "over native"]
+    print_table("sampled", heads, map(_sampled, sorted((ROOT / "scenes" / "sampled").glob("*.in"))))
+
+
+def _sampled(file: Path) -> list[str]:
     native, mitsuba, exact = NativeRenderer(), MitsubaRenderer(), NativeRenderer("long double")
-    for file in sorted((ROOT / "scenes" / "sampled").glob("*.in")):
-        scene = load_scene(file)
-        for count in (1, 16, 256):
-            large, small = (Settings(width=w, height=h, samples=count) for w, h in ((160, 120), (80, 60)))
-            wrong = [_disagreeing(scene, large, native, mitsuba), _disagreeing(scene, small, native, exact)]
-            times = _interleaved(
-                {
-                    kind: partial(_render_seconds, partial(renderer.render, scene, large))
-                    for kind, renderer in (("native", native), ("Mitsuba", mitsuba))
-                },
-                FEW_RUNS,
-            )
-            us, theirs = (statistics.median(spent) * 1e6 / (160 * 120 * count) for spent in times.values())
-            print(
-                f"{file.stem:<14}{count:>8}{wrong[0]:>9}{wrong[1]:>13}{us:>11.2f}{theirs:>12.2f}{theirs / us:>7.1f}",
-                flush=True,
-            )
+    scene = load_scene(file)
+    cells: list[list[str]] = []
+    for count in (1, 16, 256):
+        large, small = (Settings(width=w, height=h, samples=count) for w, h in ((160, 120), (80, 60)))
+        wrong = [_disagreeing(scene, large, native, mitsuba), _disagreeing(scene, small, native, exact)]
+        times = _interleaved(
+            {
+                kind: partial(_render_seconds, partial(renderer.render, scene, large))
+                for kind, renderer in (("native", native), ("Mitsuba", mitsuba))
+            },
+            FEW_RUNS,
+        )
+        us, theirs = (statistics.median(spent) * 1e6 / (160 * 120 * count) for spent in times.values())
+        cells.append([*map(str, wrong), f"{us:.2f}", f"{theirs:.2f}", f"{theirs / us:.1f}"])
+    return [file.stem, *(", ".join(each) for each in zip(*cells, strict=True))]
 
 
 def _disagreeing(scene: Scene, settings: Settings, one: Renderer, other: Renderer) -> int:
@@ -255,13 +257,17 @@ def adaptive() -> None:
     """The gallery's scenes, in which nothing is random: errors of adaptive and of uniform pictures, and rays."""
     one_in = round(1 / MEASURED)
     print(f"800 x 600, native: RMS error in levels of 255 against 256 samples a pixel, in one of {one_in} pixels: one")
-    print("sample, 16, and where --adaptive LIMIT wants them 12, with the rays a pixel from the eye")
-    print(f"{'':<18}{'1':>8}{'16':>8}" + "".join(f"{f'LIMIT {limit}':>10}{'rays':>7}" for limit in LIMITS))
-    rows = []
+    print("sample, 16, and as --adaptive LIMIT has it, with the rays a pixel from the eye")
+    heads = ["", "1", "16", *(head for limit in LIMITS for head in (f"--adaptive {limit}", "rays"))]
+    print_table("adaptive", heads, _adaptive_rows())
+
+
+def _adaptive_rows() -> Iterator[list[str]]:
+    found = []
     for file in sorted((ROOT / "scenes").glob("*.in")):
-        rows.append(_adaptive_errors(load_scene(file)))
-        print(f"{file.name:<18}{_adaptive_told(rows[-1])}", flush=True)
-    print(f"{'mean':<18}{_adaptive_told(np.mean(rows, axis=0))}")
+        found.append(_adaptive_errors(load_scene(file)))
+        yield [file.stem, *(f"{number:.2f}" for number in found[-1])]
+    yield ["mean of all", *(f"{number:.2f}" for number in np.mean(found, axis=0))]
 
 
 def _adaptive_errors(scene: Scene) -> list[float]:
@@ -293,12 +299,6 @@ def _some_pixels(scene: Scene, mask: np.ndarray, samples: int) -> np.ndarray:
     cells = [list(range(samples))]
     native_tracer.render(build_scene(scene, needs), image, passes=cells, sums=sums, mask=mask.view(np.uint8), **options)
     return np.asarray(image.pixels)
-
-
-def _adaptive_told(row: Sequence[float]) -> str:
-    one, many, *others = row
-    pairs = zip(others[::2], others[1::2], strict=True)
-    return f"{one:>8.2f}{many:>8.2f}" + "".join(f"{error:>10.2f}{rays:>7.2f}" for error, rays in pairs)
 
 
 def _seen(pixels: np.ndarray) -> np.ndarray:

@@ -29,3 +29,12 @@ def passes(samples: int, in_one: int = ONE_PASS) -> list[list[int]]:
         return [list(range(samples))]
     step = min((i for i in range(1, n) if gcd(i, n) == 1), key=lambda i: abs(i - _GOLDEN * n))
     return [[(step * (column + number)) % n * n + column for column in range(n)] for number in range(n)]
+
+
+def halves(samples: int) -> list[list[int]]:
+    """The cells of the first pass in two parts, of which the first is spread over the pixel, too: every other column.
+
+    What is drawn in one pass is one part: the columns of so small a grid lie too far to one side.
+    """
+    first, *others = passes(samples)
+    return [first[::2], first[1::2]] if others else [first]

@@ -8,16 +8,18 @@ import pytest
 from csgs import csg
 from variant import VARIANT
 
+import native_tracer
 from converter.commands import main
-from converter.commands.adapting import Adapting
-from converter.renderers.adaptive import Spread, unlike_neighbors
+from converter.renderers.adaptive import Adapting, Spread, halves_needed
 from converter.renderers.base import Interrupted
 from converter.renderers.mitsuba import MitsubaRenderer
-from converter.renderers.native import NativeRenderer
+from converter.renderers.native import NativeRenderer, build_scene
 from converter.scene.model import Camera, Checker, Finish, Light, Object, Polyhedron, Quadric, Scene, Solid, Sphere
+from converter.scene.needs import scene_needs
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
 from converter.scene.writer import write_scene
+from native_tracer.passes import passes
 
 SCENES = Path(__file__).parent.parent / "scenes"
 SETTINGS = Settings(width=64, height=48, samples=16)
@@ -28,34 +30,46 @@ MATTE = Finish(ka=0, kd=1, ks=0, alpha=1, kr=0, kt=0, ior=1)
 class Kept(Adapting):
     """Keeps what it was asked and has said, too."""
 
-    def unlike(self, signatures, colors):
-        self.signatures, self.mask = signatures.copy(), super().unlike(signatures, colors)
-        return self.mask
+    def halves(self, signatures, colors):
+        self.signatures, self.wanted = signatures.copy(), super().halves(signatures, colors)
+        return self.wanted
 
 
 def drawn(renderer, scene, limit=8, settings=SETTINGS):
-    """The picture, which pixels were refined, and the signatures."""
+    """The picture, how many halves of a pass each pixel has, and the signatures."""
     kept = Kept(limit, settings.samples)
     picture = np.asarray(renderer.render_adaptively(scene, settings, kept).pixels)
-    return picture, kept.mask, kept.signatures
+    return picture, kept.wanted, kept.signatures
 
 
 # ---- Which pixels
 
 
 def test_neighbours_are_compared():
+    """Colours weigh more than signatures."""
     signatures = np.zeros((4, 5), np.uint32)
     signatures[1, 2] = 1
     colors = np.zeros((4, 5, 3), np.float32)
-    expected = np.zeros((4, 5), bool)
-    expected[1, 1:4] = expected[0:3, 2] = True
-    assert np.array_equal(unlike_neighbors(signatures, colors, 0), expected)
-    signatures[1, 2] = 0
+    near = np.zeros((4, 5), int)
+    near[1, 1:4] = near[0:3, 2] = 1
+    assert np.array_equal(halves_needed(signatures, colors, 0), near)
     colors[1, 2, 1] = 3 / 255
-    assert np.array_equal(unlike_neighbors(signatures, colors, 2.9), expected)
-    assert not unlike_neighbors(signatures, colors, 3).any()
+    assert np.array_equal(halves_needed(signatures, colors, 2.9), 2 * near)
+    assert np.array_equal(halves_needed(signatures, colors, 3), near)
+    signatures[3, 2] = 1
+    assert halves_needed(signatures, colors, 2.9)[2:].tolist() == [[0, 0, 2, 0, 0], [0, 1, 1, 1, 0]]
+    signatures[:] = 0
+    assert not halves_needed(signatures, colors, 3).any()
     colors[1, 2, 1], colors[3, 4] = np.nan, (7, 7, 7)  # black, and white
-    assert np.argwhere(unlike_neighbors(signatures, colors, 254)).tolist() == [[2, 4], [3, 3], [3, 4]]
+    assert np.argwhere(halves_needed(signatures, colors, 254)).tolist() == [[2, 4], [3, 3], [3, 4]]
+
+
+@pytest.mark.parametrize(("samples", "least", "most"), [(4, 4, 4), (16, 16, 16), (25, 3, 5), (196, 7, 14)])
+def test_samples_are_told(samples, least, most):
+    chosen = Adapting(2, samples)
+    chosen.halves(np.array([[0, 0, 0, 1, 1]], np.uint32), np.array([[[0] * 3, [1] * 3] + [[1] * 3] * 3], np.float32))
+    assert chosen.samples.tolist() == [[1 + most, 1 + most, 1 + least, 1 + least, 1]]
+    assert chosen.statistics()["refined_pixels"] == (2 if least < most else 4)
 
 
 WHITE = (Solid((1, 1, 1)),)
@@ -64,10 +78,6 @@ WHITE = (Solid((1, 1, 1)),)
 def scene_of(*objects, finishes=(FLAT,), pigments=WHITE, lights=()):
     camera = Camera((0, 0, 10), (0, 0, 0), (0, 1, 0), 40)
     return Scene(camera, (0.5, 0.5, 0.5), lights, pigments, finishes, objects)
-
-
-def column_and_row(mask):
-    return {(int(x), int(y)) for y, x in np.argwhere(mask)}
 
 
 BOX = Polyhedron(((1, 0, 0, -2), (-1, 0, 0, -2), (0, 1, 0, -2), (0, -1, 0, -2), (0, 0, 1, -2), (0, 0, -1, -2)))
@@ -106,14 +116,14 @@ def test_what_no_colour_tells(mi, name):
     """Edges are found where both sides have the same colour; each renderer finds the same."""
     found = {}
     for renderer in (NativeRenderer(), NativeRenderer("float"), MitsubaRenderer(VARIANT)):
-        _, mask, signatures = drawn(renderer, PLAIN[name], limit=100)
-        found[str(renderer)] = mask, signatures
-    (mask, signatures), (single, _), (other, words) = found.values()
-    assert np.array_equal(mask, other)
+        _, wanted, signatures = drawn(renderer, PLAIN[name], limit=100)
+        found[str(renderer)] = wanted, signatures
+    (wanted, signatures), (single, _), (other, words) = found.values()
+    assert np.array_equal(wanted, other)
     assert np.array_equal(signatures, words)
-    assert np.mean(mask != single) < 0.02
-    assert mask.any() == (name != "nothing")
-    assert not mask.all()
+    assert np.mean(wanted != single) < 0.02
+    assert wanted.any() == (name != "nothing")
+    assert not wanted.all()
 
 
 def test_what_weighs_less_than_the_limit_is_not_signed(mi):
@@ -141,11 +151,11 @@ def test_what_weighs_less_than_the_limit_is_not_signed(mi):
 def test_both_renderers_refine_the_same_pixels(mi, name):
     scene = load_scene(SCENES / f"{name}.in")
     settings = replace(SETTINGS, samples=4, cutoff=1 / 64)
-    native, mask, signatures = drawn(NativeRenderer(), scene, settings=settings)
+    native, wanted, signatures = drawn(NativeRenderer(), scene, settings=settings)
     other, same, words = drawn(MitsubaRenderer(VARIANT), scene, settings=settings)
     assert np.array_equal(signatures, words)
-    assert np.array_equal(mask, same)
-    assert 0.01 < mask.mean() < 1
+    assert np.array_equal(wanted, same)
+    assert 0.01 < np.mean(wanted > 0) < 1
     assert other == pytest.approx(native, abs=1e-6)
 
 
@@ -173,31 +183,33 @@ def test_refined_pixels_have_all_samples_and_others_one(renderer, small_scene, p
     settings = replace(SETTINGS, pixel=pixel)
     many = np.asarray(renderer.render(small_scene, settings).pixels)
     one = np.asarray(renderer.render(small_scene, replace(settings, samples=1)).pixels)
-    picture, mask, _ = drawn(renderer, small_scene, settings=settings)
-    assert 0.05 < mask.mean() < 0.95
-    assert np.array_equal(picture, np.where(mask[..., None], many, one))
+    picture, wanted, _ = drawn(renderer, small_scene, settings=settings)
+    assert set(np.unique(wanted)) == {0, 1, 2}
+    assert np.array_equal(picture, np.where(wanted[..., None] > 0, many, one))
 
 
-def test_of_many_samples_refined_pixels_have_a_pass(renderer, small_scene):
+def test_of_many_samples_refined_pixels_have_halves_of_a_pass(renderer, small_scene):
     settings = replace(SETTINGS, samples=144)
-
-    def stop(share):
-        if share >= 1 / 12:
-            raise KeyboardInterrupt
-
-    with pytest.raises(Interrupted) as caught:
-        NativeRenderer().render(small_scene, settings, stop)
-    assert caught.value.partial.passes.done == 1
-    first_pass = np.asarray(caught.value.partial.passes.colors) / 12
+    cells = passes(144)[0]
+    picture, wanted, _ = drawn(renderer, small_scene, settings=settings)
+    assert set(np.unique(wanted)) == {0, 1, 2}
     one = np.asarray(NativeRenderer().render(small_scene, replace(settings, samples=1)).pixels)
-    picture, mask, _ = drawn(renderer, small_scene, settings=settings)
-    assert 0.05 < mask.mean() < 0.95
-    assert picture == pytest.approx(np.where(mask[..., None], first_pass, one), abs=1e-6)
+    half, whole = (of_cells(small_scene, settings, some) for some in ([k for k in cells if k % 2 == 0], cells))
+    assert picture == pytest.approx(np.choose(wanted[..., None], (one, half, whole)), abs=1e-6)
+
+
+def of_cells(scene, settings, cells):
+    """The picture of some of the samples, in every pixel."""
+    needs = scene_needs(scene, settings)
+    image, sums = (kind(settings.width, settings.height) for kind in (native_tracer.Image, native_tracer.PassSums))
+    limits = {"samples": settings.samples, "cutoff": settings.cutoff, "max_depth": needs.max_depth}
+    native_tracer.render(build_scene(scene, needs), image, passes=[cells], sums=sums, **limits)
+    return np.asarray(image.pixels)
 
 
 def test_nothing_to_refine(renderer):
-    picture, mask, _ = drawn(renderer, PLAIN["nothing"])
-    assert not mask.any()
+    picture, wanted, _ = drawn(renderer, PLAIN["nothing"])
+    assert not wanted.any()
     assert (picture == 0.5).all()
 
 
@@ -245,7 +257,7 @@ def test_both_renderers_are_sure_of_the_same_pixels(mi, small_scene):
         chosen = Adapting(4, 64)
         settings = replace(SETTINGS, samples=64)
         pictures.append(np.asarray(renderer.render_adaptively(sampled(small_scene), settings, chosen).pixels))
-        counts.append(chosen._samples.copy())
+        counts.append(chosen.samples.copy())
     assert np.array_equal(*counts)
     assert pictures[0] == pytest.approx(pictures[1], abs=1e-6)
     assert set(np.unique(counts[0])) <= set(range(16, 65, 8))
@@ -265,7 +277,7 @@ def test_the_error_is_below_the_limit(small_scene):
     truth = np.asarray(NativeRenderer().render(scene, replace(settings, samples=1024, seed=5)).pixels)
     chosen = Adapting(2, 256)
     found = np.asarray(NativeRenderer().render_adaptively(scene, settings, chosen).pixels)
-    sure = chosen._samples < 256
+    sure = chosen.samples < 256
     assert 0.3 < sure.mean() < 1
     error = 255 * (found - truth).astype(float)[sure]
     assert np.sqrt(np.mean(error**2)) < 2
@@ -311,10 +323,10 @@ def test_the_command(whitted, scene, small_scene, tmp_path):
     options = ("--method", "native", "--adaptive", 8, "--adaptive-map", where, "--stats")
     status, printed, _ = whitted("render", scene, out, 64, 48, *options)
     assert status == 0
-    _, mask, _ = drawn(NativeRenderer(), small_scene)
-    assert ["refined", "pixels", str(mask.sum())] in [line.split() for line in printed.splitlines()]
-    white = np.repeat(255 * mask[..., None], 3, axis=2).astype(np.uint8)
-    assert where.read_bytes() == b"P6\n64 48\n255\n" + bytes(white)
+    _, wanted, _ = drawn(NativeRenderer(), small_scene)
+    assert ["refined", "pixels", str(np.sum(wanted == 2))] in [line.split() for line in printed.splitlines()]
+    gray = np.repeat(np.array([0, 128, 255], np.uint8)[wanted][..., None], 3, axis=2)
+    assert where.read_bytes() == b"P6\n64 48\n255\n" + bytes(gray)
 
 
 @pytest.mark.parametrize(

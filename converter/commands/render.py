@@ -107,9 +107,9 @@ def _add_adaptive_options(parser: Parser) -> None:
         "--adaptive",
         type=not_negative,
         metavar="LIMIT",
-        help="draw a pass of --samples of pixels that are unlike a neighbour, in what their rays meet or by more than "
-        "LIMIT of 255 levels, and one ray of others; in sampled scenes, passes until errors are below LIMIT; with no "
-        f"--samples, a pass has {math.isqrt(ADAPTIVE_SAMPLES)} rays and there are as many",
+        help="draw a pass of --samples of pixels that differ from a neighbour by more than LIMIT of 255 levels, half a "
+        "pass where only what their rays meet differs, and one ray of others; in sampled scenes, passes until errors "
+        f"are below LIMIT; with no --samples, a pass has {math.isqrt(ADAPTIVE_SAMPLES)} rays and there are as many",
     )
     group.add_argument(
         "--adaptive-map",
@@ -216,7 +216,7 @@ def _draw(
     arguments: argparse.Namespace, method: Chosen, scene: Path, out: Path, bar: "ProgressBar | None" = None
 ) -> "tuple[Rendering, dict[str, float], dict[str, Any]]":
     """Draw a scene; the picture, seconds by stage, and all statistics."""
-    from converter.commands.adapting import adapting
+    from converter.commands.adapting import adapting, write_map
     from converter.commands.drawing import Keeping, draw
     from converter.files import is_special
     from converter.renderers.base import draws_in_passes
@@ -245,7 +245,7 @@ def _draw(
     if chooser is not None:
         statistics |= chooser.statistics()
         if arguments.adaptive_map is not None:
-            chooser.write_map(arguments.adaptive_map)
+            write_map(arguments.adaptive_map, chooser)
     return rendering, stages, statistics
 
 

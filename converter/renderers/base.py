@@ -136,13 +136,16 @@ class Refinement(Protocol):
 
     least_weight: float
 
-    def unlike(self, signatures: Any, colors: Any) -> Any:
-        """In a scene in which nothing is random, the pixels that need a pass of samples, when each has one sample.
+    def halves(self, signatures: Any, colors: Any) -> Any:
+        """In a scene in which nothing is random, how many halves of a pass each pixel needs, when each has one sample.
 
         Args:
             signatures: (height, width) uint32, a word for what is decided along the rays of each pixel that weigh at
                 least `least_weight`.
             colors: (height, width, 3) float32, linear RGB.
+
+        Returns:
+            (height, width), 0 to 2.
 
         """
         ...

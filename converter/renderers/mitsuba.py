@@ -119,7 +119,7 @@ class MitsubaRenderer:
         """Draw adaptively, as `AdaptiveRenderer` has it."""
         import numpy as np
 
-        from native_tracer.passes import passes
+        from native_tracer.passes import halves, passes
 
         started = time.perf_counter()
         variant = self._start()
@@ -169,8 +169,8 @@ class MitsubaRenderer:
                             break
                 else:
                     signatures = np.zeros((height, width), dtype=np.uint32)
-                    cells = passes(samples)[0]
-                    first = share_of_first(len(cells))
+                    parts = halves(samples)
+                    first, count = share_of_first(sum(map(len, parts))), 0
                     told = part_of(progress, 0, first)
                     bands = pictures.signed_bands(integrator, mitsuba_scene, sensor, refinement.least_weight, told)
                     for row, color, words in bands:
@@ -178,8 +178,11 @@ class MitsubaRenderer:
                         pixels[row : row + len(rows)] = rows
                         signatures[row : row + len(rows)] = np.asarray(words).reshape(-1, width)
                     too_deep.append(integrator.pixels_too_deep)
-                    mask = refinement.unlike(signatures, pixels)
-                    add(sums, mask, cells, len(cells), part_of(progress, first, 1))
+                    wanted = refinement.halves(signatures, pixels)
+                    for done, cells in enumerate(parts):
+                        count += len(cells)
+                        ends = (first + (1 - first) * (done + k) / len(parts) for k in (0, 1))
+                        add(sums, wanted > done, cells, count, part_of(progress, *ends))
         except KeyboardInterrupt:
             raise Interrupted(rendering()) from None
         except RuntimeError as error:

@@ -140,14 +140,17 @@ class NativeRenderer:
                         break
             else:
                 signatures = np.zeros((settings.height, settings.width), np.uint32)
-                cells = _passes(needs.samples)[0]
-                first = share_of_first(len(cells))
+                parts = _halves(needs.samples)
+                first = share_of_first(sum(map(len, parts)))
                 signing = {"signatures": signatures, "least_weight": refinement.least_weight}
                 draw(samples=1, progress=part_of(progress, 0, first), **signing)
                 statistics.append(image.statistics)
-                mask = refinement.unlike(signatures, np.asarray(image.pixels))
+                wanted = refinement.halves(signatures, np.asarray(image.pixels))
                 sums = tracer.PassSums(settings.width, settings.height)
-                draw(passes=[cells], sums=sums, mask=mask.view(np.uint8), progress=part_of(progress, first, 1))
+                for done in range(1, len(parts) + 1):
+                    mask = (wanted >= done).view(np.uint8)
+                    told = part_of(progress, first, first + (1 - first) * done / len(parts))
+                    draw(passes=parts[:done], sums=sums, mask=mask, progress=told)
         except KeyboardInterrupt:
             raise Interrupted(rendering()) from None
         return rendering()
@@ -189,6 +192,12 @@ def _passes(samples: int, in_one: int | None = None) -> list[list[int]]:
     from native_tracer.passes import passes  # late: it may not be built
 
     return passes(samples) if in_one is None else passes(samples, in_one)
+
+
+def _halves(samples: int) -> list[list[int]]:
+    from native_tracer.passes import halves  # late: it may not be built
+
+    return halves(samples)
 
 
 def _pass_sums(tracer: ModuleType, settings: Settings, start: Passes | None) -> Any:

@@ -16,8 +16,8 @@ Crop = tuple[int, int, int, int]
 MOST_THREADS = 1024
 SAMPLES = 16
 """Rays per pixel of a scene that is sampled, where nobody asks for another number."""
-ADAPTIVE_SAMPLES = 144
-"""The same where some pixels get more rays than others; a pass has 12 of them."""
+ADAPTIVE_SAMPLES = 196
+"""The same where some pixels get more rays than others; a pass has 14 of them."""
 
 
 @dataclass(frozen=True, slots=True)

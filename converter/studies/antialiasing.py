@@ -10,7 +10,7 @@ from typing import Any, Literal
 
 import numpy as np
 
-from converter.commands.adapting import Adapting
+from converter.renderers.adaptive import Adapting
 from converter.renderers.base import AdaptiveRenderer, Renderer, Rendering, draws_adaptively
 from converter.renderers.methods import Family, Method, find_method
 from converter.renderers.povray import PovrayRenderer, Supersampling
