@@ -23,6 +23,7 @@ REASONS = {
     "cutoff": "whether a ray weighs enough to be followed",
     "division": "what is divided by may be 0",
     "range": "a number is beyond those of a double",
+    "degenerate": "what is equal, or nearly so, that no number of digits tells",
 }
 """Why a pixel may be undecided."""
 
