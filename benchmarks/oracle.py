@@ -10,12 +10,11 @@ import argparse
 import random
 import sys
 import time
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
 from pathlib import Path
 from typing import NamedTuple
 
 import numpy as np
-from tables import print_table
 
 import certified_tracer
 from converter.certify.scene import certified_scene
@@ -77,24 +76,25 @@ def main() -> int:
     arguments = parser.parse_args()
     scenes = arguments.scenes or sorted(SCENES.glob("*.in"))
     settings = Settings(*arguments.size)
-    totals = [0, 0, 0, 0]
-
-    def rows() -> Iterator[list[str]]:
-        for number, file in enumerate(scenes):
-            rng = random.Random(f"{arguments.seed} {file.stem}")
-            count = (arguments.pixels + number) // len(scenes)
-            pixels = [(rng.randrange(settings.width), rng.randrange(settings.height)) for _ in range(count)]
-            started = time.process_time()
-            found = compare(load_scene(file), settings, pixels)
-            counts = [found.same, len(found.contradictions), found.not_certified, found.not_judged]
-            totals[:] = (a + b for a, b in zip(totals, counts, strict=True))
-            places = " ".join(f"({x}, {y})" for x, y in found.contradictions[:5])
-            yield [file.stem, *map(str, counts), places, f"{time.process_time() - started:.1f}"]
-        yield ["all", *map(str, totals), "", ""]
-
-    heads = ["", "the same", "contradictions", "not certified", "not judged", "where", "seconds"]
-    print_table("oracle", heads, rows())
+    totals = np.zeros(4, int)
+    print(f"{'':<14}{'the same':>10}{'contradictions':>16}{'not certified':>15}{'not judged':>12}{'seconds':>9}")
+    for number, file in enumerate(scenes):
+        rng = random.Random(f"{arguments.seed} {file.stem}")
+        count = (arguments.pixels + number) // len(scenes)
+        pixels = [(rng.randrange(settings.width), rng.randrange(settings.height)) for _ in range(count)]
+        started = time.process_time()
+        found = compare(load_scene(file), settings, pixels)
+        counts = [found.same, len(found.contradictions), found.not_certified, found.not_judged]
+        totals += counts
+        places = " ".join(f"({x}, {y})" for x, y in found.contradictions[:5])
+        print(f"{file.stem:<14}{_told(counts)}{time.process_time() - started:>9.1f} {places}", flush=True)
+    print(f"{'all':<14}{_told(totals)}")
     return 1 if totals[1] else 0
+
+
+def _told(counts: Sequence[int]) -> str:
+    same, contradictions, not_certified, not_judged = counts
+    return f"{same:>10}{contradictions:>16}{not_certified:>15}{not_judged:>12}"
 
 
 if __name__ == "__main__":
