@@ -12,12 +12,11 @@ from pathlib import Path
 import numpy as np
 from tables import print_table
 
-from converter.certify.certificate import certify
+from converter.certify.certificate import certify, levels
 from converter.renderers.base import RendererUnavailable
 from converter.renderers.methods import Method, find_method
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
-from native_tracer import quantize
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"
 
@@ -50,8 +49,7 @@ def _row(file: Path, settings: Settings, methods: Sequence[Method]) -> list[str]
         except RendererUnavailable:
             row.append("")
             continue
-        levels = np.frombuffer(quantize(rendering.pixels), np.uint8).reshape(settings.height, settings.width, 3)
-        row.append(str(int((certificate.misses(levels) > 0).sum())))
+        row.append(str(int((certificate.misses(levels(rendering)) > 0).sum())))
     return row
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from converter.certify.scene import certified_scene
-from converter.renderers.base import Progress, RendererUnavailable
+from converter.renderers.base import Progress, RendererUnavailable, Rendering
 from converter.scene.model import Scene
 from converter.scene.settings import Settings
 
@@ -67,6 +67,13 @@ class Certificate:
         off = np.maximum(low - found, found - high).max(axis=2).clip(0)
         result: NDArray[np.int16] = np.where(self.certified, off, 0)
         return result
+
+
+def levels(rendering: Rendering) -> NDArray[np.uint8]:
+    """(height, width, 3), the bytes that a picture is written with."""
+    from native_tracer import quantize
+
+    return np.frombuffer(quantize(rendering.pixels), np.uint8).reshape(rendering.height, rendering.width, 3)
 
 
 def certify(
