@@ -1,52 +1,56 @@
-"""Prints the table of the README on certified pixels: seconds, what is undecided and why, and what methods get wrong.
+"""Prints the table of docs/certify.md: seconds, what is undecided and why, and what methods get wrong.
 
 .venv/bin/python benchmarks/certify.py [--size W H] [--methods NAME,...] [SCENE...]
+
+A cell is empty where a method is missing, or does not draw such a scene.
 """
 
 import argparse
+from collections.abc import Sequence
 from pathlib import Path
 
 import numpy as np
+from tables import print_table
 
-from converter.certify.certificate import certify
+from converter.certify.certificate import certify, levels
 from converter.renderers.base import RendererUnavailable
-from converter.renderers.methods import find_method
+from converter.renderers.methods import Method, find_method
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
-from native_tracer import quantize
 
-SCENES = Path(__file__).parent.parent / "scenes"
+SCENES = Path(__file__).resolve().parent.parent / "scenes"
 
 
 def main() -> None:
     """Print it."""
-    parser = argparse.ArgumentParser(description=__doc__)
-    parser.add_argument("--size", nargs=2, type=int, default=(800, 600), metavar=("WIDTH", "HEIGHT"))
-    parser.add_argument("--methods", default="native,mitsuba,mitsuba-mesh,native-float")
+    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
+    parser.add_argument("--size", nargs=2, type=int, default=(400, 300), metavar=("WIDTH", "HEIGHT"))
+    parser.add_argument("--methods", default="native,mitsuba,mitsuba-mesh,native-float,povray")
     parser.add_argument("scenes", nargs="*", type=Path)
     arguments = parser.parse_args()
-    width, height = arguments.size
-    settings = Settings(width=width, height=height)
-    names = arguments.methods.split(",")
-    columns = ["", "seconds", "128 digits", "256", "512", "by ties", "undecided", *names]
-    print("| " + " | ".join(columns) + " |\n" + "|---" * len(columns) + "|")
-    for file in arguments.scenes or sorted(SCENES.glob("*.in")):
-        scene = load_scene(file)
-        certificate = certify(scene, settings)
-        rungs = np.bincount(certificate.rung.ravel(), minlength=len(certificate.digits))
-        undecided = ", ".join(f"{name} {count}" for name, count in certificate.counts().items()) or "0"
-        row = [file.stem, f"{certificate.seconds['certify']:.1f}", *map(str, rungs[1:]), str(certificate.tied.sum())]
-        row.append(undecided)
-        for name in names:
-            try:
-                method = find_method(name)
-                rendering = method.renderer(None).render(scene, method.settings(settings))
-            except RendererUnavailable:
-                row.append("")
-                continue
-            levels = np.frombuffer(quantize(rendering.pixels), np.uint8).reshape(height, width, 3)
-            row.append(str(int((certificate.misses(levels) > 0).sum())))
-        print("| " + " | ".join(row) + " |", flush=True)
+    settings = Settings(*arguments.size)
+    methods = [find_method(name) for name in arguments.methods.split(",")]
+    files = arguments.scenes or sorted(SCENES.glob("*.in"))
+    columns = ["", "seconds", "128 digits", "256", "512", "by ties", "undecided", *(method.name for method in methods)]
+    print_table("certified", columns, (_row(file, settings, methods) for file in files))
+
+
+def _row(file: Path, settings: Settings, methods: Sequence[Method]) -> list[str]:
+    """A scene's."""
+    scene = load_scene(file)
+    certificate = certify(scene, settings)
+    rungs = np.bincount(certificate.rung.ravel(), minlength=len(certificate.digits))
+    undecided = ", ".join(f"{name} {count}" for name, count in certificate.counts().items()) or "0"
+    row = [file.stem, f"{certificate.seconds['certify']:.1f}", *map(str, rungs[1:]), str(certificate.tied.sum())]
+    row.append(undecided)
+    for method in methods:
+        try:
+            rendering = method.renderer(None).render(scene, method.settings(settings))
+        except RendererUnavailable:
+            row.append("")
+            continue
+        row.append(str(int((certificate.misses(levels(rendering)) > 0).sum())))
+    return row
 
 
 if __name__ == "__main__":

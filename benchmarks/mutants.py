@@ -26,6 +26,8 @@ TREE = FOLDER / "tree"
 LEFT_OUT = shutil.ignore_patterns(".*", "build", "dist", "out", "__pycache__", "*.egg-info", "*.so")
 LONGEST = 300
 """Seconds of the tests of one mutant: some make them go on for ever."""
+BUILT = {"native_tracer": "_core", "certified_tracer": "_certified"}
+"""The C++ module of each package that mutants are planted into."""
 # Without it Python would find the modules of an editable installation in the project itself.
 SITECUSTOMIZE = """import sys
 sys.meta_path[:] = [finder for finder in sys.meta_path if not type(finder).__module__.startswith("_editable_skbc")]
@@ -44,17 +46,19 @@ def copy_project() -> None:
 
 
 def build() -> bool:
-    """Build the native module of the copy, if it is not what it was made from; whether it compiles."""
+    """Build the C++ modules of the copy, if they are not what they were made from; whether they compile."""
     scripts, out = Path(sys.executable).parent, FOLDER / "build"
     if not (out / "build.ninja").exists():
         configure = [scripts / "cmake", "-S", TREE, "-B", out, "-G", "Ninja", f"-Dnanobind_DIR={nanobind.cmake_dir()}"]
         configure += ["-DCMAKE_BUILD_TYPE=Release", "-DCMAKE_CXX_FLAGS_RELEASE=-O1", "-DWHITTED_X86_VARIANTS=OFF"]
         configure += [f"-DCMAKE_MAKE_PROGRAM={scripts / 'ninja'}", f"-DPython_EXECUTABLE={sys.executable}"]
         subprocess.run(configure, check=True, stdout=subprocess.DEVNULL)
-    if subprocess.run([scripts / "cmake", "--build", out], stdout=subprocess.DEVNULL).returncode:
+    targets = ["--target", *BUILT.values()]
+    if subprocess.run([scripts / "cmake", "--build", out, *targets], stdout=subprocess.DEVNULL).returncode:
         return False
-    (module,) = out.glob("_core.*.so")
-    shutil.copy(module, TREE / "native_tracer")
+    for package, name in BUILT.items():
+        (module,) = out.glob(f"{name}.*.so")
+        shutil.copy(module, TREE / package)
     return True
 
 

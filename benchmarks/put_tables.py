@@ -1,4 +1,4 @@
-"""Puts tables that the benchmarks have printed into docs/figures.md, each between the comments with its name.
+"""Puts tables that the benchmarks have printed into the pages of docs/, each between the comments with its name.
 
 make figures | tee out/figures.txt
 python benchmarks/put_tables.py out/figures.txt
@@ -9,19 +9,21 @@ from pathlib import Path
 
 from tables import END, begin
 
-FIGURES = Path(__file__).resolve().parent.parent / "docs" / "figures.md"
+PAGES = sorted((Path(__file__).resolve().parent.parent / "docs").glob("*.md"))
 
 
 def main() -> None:
-    """Replace the tables of the page that the files on the command line have; status 1 if it has none of a name."""
-    text = FIGURES.read_text(encoding="utf-8")
+    """Replace the tables that the files on the command line have; status 1 if no page has a place for one of them."""
+    texts = {page: page.read_text(encoding="utf-8") for page in PAGES}
     for file in sys.argv[1:]:
         for name, table in tables(Path(file).read_text(encoding="utf-8")).items():
-            try:
-                text = replaced(text, name, table)
-            except ValueError:
-                sys.exit(f"{FIGURES.name} has no place for the table {name!r} of {file}")
-    FIGURES.write_text(text, encoding="utf-8")
+            page = next((page for page, text in texts.items() if begin(name) in text), None)
+            if page is None:
+                sys.exit(f"no page of docs/ has a place for the table {name!r} of {file}")
+            texts[page] = replaced(texts[page], name, table)
+    for page, text in texts.items():
+        if text != page.read_text(encoding="utf-8"):
+            page.write_text(text, encoding="utf-8")
 
 
 def tables(printed: str) -> dict[str, str]:

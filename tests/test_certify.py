@@ -7,11 +7,10 @@ from decimal import Decimal, localcontext
 from fractions import Fraction
 from pathlib import Path
 
-import numpy as np
 import pytest
 
 import certified_tracer
-from converter.certify.certificate import certify
+from converter.certify.certificate import certify, levels
 from converter.certify.numbers import number
 from converter.commands.main import main
 from converter.renderers.base import EffectUnavailable
@@ -20,7 +19,6 @@ from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
 from converter.studies.exact.arithmetic import Decimals, Undecided
 from converter.studies.exact.tracer import ExactTracer
-from native_tracer import quantize
 
 SCENES = Path(__file__).parent.parent / "scenes"
 RUNGS = range(len(certified_tracer.digits))
@@ -104,10 +102,10 @@ def test_pixels_are_those_of_a_tracer_without_rounding(name: str, changes: dict[
 def test_native_gets_no_certified_pixel_wrong(name: str) -> None:
     scene, settings = load_scene(SCENES / f"{name}.in"), Settings(width=24, height=18)
     certificate = certify(scene, settings)
-    levels = np.frombuffer(quantize(NativeRenderer().render(scene, settings).pixels), np.uint8).reshape(18, 24, 3)
-    assert not certificate.misses(levels).any()
+    found = levels(NativeRenderer().render(scene, settings))
+    assert not certificate.misses(found).any()
     assert certificate.certified.mean() > 0.99
-    assert (certificate.misses(levels ^ 1) > 0).mean() > 0.95  # a level beside is noticed
+    assert (certificate.misses(found ^ 1) > 0).mean() > 0.95  # a level beside is noticed
 
 
 def test_what_numbers_of_some_digits_do_not_determine() -> None:

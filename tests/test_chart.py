@@ -188,6 +188,21 @@ def test_zeros_are_drawn_in_a_row_of_their_own():
     assert heights == [axes.get_yticks()[0], pytest.approx(1e-4)]
 
 
+def test_certified_pixels_take_the_place_of_the_reference():
+    methods = [measured("native", disagreeing=9), measured("native-float", disagreeing=480)]
+    for m, missed in zip(methods, (0, 30), strict=True):
+        m.missed = missed
+    found = replace(study(*methods), certified=300_000)
+    axes = chart([found]).axes[0]
+    assert axes.get_ylabel() == "certified pixels that are wrong"
+    heights = [line.get_ydata()[0] for line in axes.lines if line.get_marker() == "o"]
+    assert heights == [axes.get_yticks()[0], pytest.approx(1e-4)]
+    assert not [text for text in axes.texts if "floor" in text.get_text()]
+    assert [row[1] for row in error_rows(found)] == ["0", "30"]
+    lines = list(csv.DictReader(io.StringIO(to_csv([found]))))
+    assert [(line["certified"], line["certified_wrong"]) for line in lines] == [("300000", "0"), ("300000", "30")]
+
+
 @pytest.mark.parametrize(("lost", "drawn"), [(1e-3, True), (1e-10, False)])
 def test_what_the_reference_leaves_out_is_a_floor_too(lost, drawn):
     texts = [text.get_text() for text in chart([study(measured("native"), left_out=LeftOut(0.1, lost))]).axes[1].texts]
@@ -585,6 +600,30 @@ def test_chart(whitted, scene, tmp_path):
     assert [line["method"] for line in csv.DictReader(table.open())] == ["native", "native:max_depth=1"]
     assert len(json.loads(file.read_text())["scenes"][0]["methods"][0]["all_runs"]) == 2
     assert sorted(path.name for path in tmp_path.iterdir()) == ["a.csv", "a.json", "a.svg", "small.in"]
+
+
+def test_chart_of_certified_pixels(whitted, scene, tmp_path):
+    options = ("--methods", "native,native:max_depth=0", "--size", "40x30", "--runs", 2, "--error", "certified")
+    status, out, err = whitted("chart", scene, "-o", tmp_path / "a.svg", *options)
+    assert (status, err) == (0, "")
+    lines = out.splitlines()
+    assert lines[1].split()[:2] == ["wrong", "RMS"]
+    assert lines[2].split()[:2] == ["native", "0"]
+    assert int(lines[3].split()[1]) > 100
+    assert "certified: 1200 pixels" in lines
+    assert "certified pixels that are wrong" in (tmp_path / "a.svg").read_text()
+
+
+def test_certified_pixels_are_of_scenes_that_are_not_sampled(whitted, scene, tmp_path):
+    soft = tmp_path / "soft.in"
+    text = scene.read_text().replace(
+        "1\n0 0 0   1 1 1   1 0 0\n", "2\n0 0 0   1 1 1   1 0 0\n0 9 9   1 1 1   1 0 0   2\n"
+    )
+    soft.write_text(text)
+    for words, message in (([soft], "of scenes that are not sampled"), ([scene, "--adaptive"], "not with --adaptive")):
+        status, _, err = whitted("chart", *words, "-o", tmp_path / "a.svg", "--error", "certified", "-q")
+        assert status == 2
+        assert message in err
 
 
 @pytest.mark.parametrize(

@@ -67,6 +67,9 @@ class Rung {
         } catch (const Undecided& undecided) {
             result.reason = undecided.reason;
         }
+        if (tracer.degenerate() && result.reason != Reason::none && result.reason != Reason::byte) {
+            result.reason = Reason::degenerate;
+        }
         if (std::fetestexcept(exceptions) != 0) {
             result.reason = Reason::range;
         }
@@ -140,7 +143,7 @@ std::vector<std::size_t> climb(const Scene& scene, const Tree& tree, const std::
                                const std::vector<std::size_t>& indices, int number, int threads,
                                std::vector<Pixel>& results, const std::function<void(double)>& watch) {
     constexpr std::size_t share = sizeof(End) == sizeof(double) ? 64 : 4;
-    const bool last = number == static_cast<int>(rung_digits.size()) - 1 && scene.ties;
+    const bool last = number == static_cast<int>(rung_digits.size()) - 1;
     std::unique_ptr<Rung<End>> rung;
     try {
         rung = make_rung<End>(scene, tree, number, last);

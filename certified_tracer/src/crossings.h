@@ -12,13 +12,13 @@
 namespace certified {
 
 // Signs that are certain. On the last rung a number that is 0 to some 80 digits counts as 0, as the format's rule for
-// ties wants it: "equal but for roundings".
+// ties wants it: "equal but for roundings". One that is 0 to some 20 digits there, and known no better, is degenerate.
 template <typename End>
 class Judge {
  public:
     using I = Interval<End>;
 
-    explicit Judge(bool last) : last_(last) {}
+    Judge(bool last, bool ties) : last_(last), ties_(ties) {}
 
     int sign(const I& x, Reason reason) {
         if (x.positive()) {
@@ -30,19 +30,22 @@ class Judge {
         if (x.is_zero()) {
             return 0;
         }
-        if (last_ && x.high_double() < tie && x.low_double() > -tie) {
+        if (last_ && within(x, tie) && ties_) {
             tied = true;
             return 0;
         }
+        degenerate |= last_ && within(x, nearly);
         throw Undecided{reason};
     }
 
-    bool tied = false;  // such a number was met
+    bool tied = false, degenerate = false;  // such a number was met
 
  private:
-    static constexpr double tie = 0x1p-270;
+    static constexpr double tie = 0x1p-270, nearly = 0x1p-66;
 
-    bool last_;
+    static bool within(const I& x, double size) { return x.high_double() < size && x.low_double() > -size; }
+
+    bool last_, ties_;
 };
 
 template <typename End>

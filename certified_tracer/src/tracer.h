@@ -27,11 +27,11 @@ class Tracer {
     using R = Ray<End>;
 
     Tracer(const PreparedScene<End>& scene, const Tree& tree, bool last)
-        : scene_(scene), tree_(tree), judge_(last), bodies_(scene, judge_) {}
+        : scene_(scene), tree_(tree), judge_(last, scene.scene.ties), bodies_(scene, judge_) {}
 
     // The mean of a pixel's rays. Throws Undecided.
     V pixel(int column, int row) {
-        judge_.tied = false;
+        judge_.tied = judge_.degenerate = false;
         doubt_ = Reason::none;
         const Scene& s = scene_.scene;
         V sum{0, 0, 0};
@@ -50,6 +50,7 @@ class Tracer {
     // What was not certain, but could be told with all its answers.
     Reason doubt() const { return doubt_; }
     bool tied() const { return judge_.tied; }
+    bool degenerate() const { return judge_.degenerate; }
 
  private:
     struct Task {
@@ -372,7 +373,9 @@ class Tracer {
             const I cosine2 = (I(1) - eta) * (I(1) + eta) + square(eta * across);
             const int sign = judge_.sign(cosine2, Reason::reflection);
             next.inside = sign < 0 ? met.inside : !met.inside;
-            next.direction = sign < 0 ? mirrored : eta * direction - (eta * across + sqrt(cosine2)) * normal;
+            // The root of what is 0 by rule, whose half of the digits would be lost.
+            const I cosine = sign == 0 ? I(0) : sqrt(cosine2);
+            next.direction = sign < 0 ? mirrored : eta * direction - (eta * across + cosine) * normal;
             tasks_.push_back({next, task.weight * finish.kt, task.depth + 1});
         }
     }

@@ -17,11 +17,13 @@ enum class Reason : unsigned char {
     cutoff,      // whether a ray weighs enough to be followed
     division,    // by what may be 0
     range,       // numbers beyond those of a double
+    degenerate,  // what no number of digits decides
     count_
 };
 
-inline constexpr const char* reason_names[] = {"none",   "byte",   "hit",        "plane",  "tile",     "texel",
-                                               "shadow", "facing", "reflection", "cutoff", "division", "range"};
+inline constexpr const char* reason_names[] = {"none",     "byte",   "hit",       "plane",      "tile",
+                                               "texel",    "shadow", "facing",    "reflection", "cutoff",
+                                               "division", "range",  "degenerate"};
 
 struct Undecided {
     Reason reason;

@@ -7,7 +7,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from converter.certify.scene import certified_scene
-from converter.renderers.base import Progress, RendererUnavailable
+from converter.renderers.base import Progress, RendererUnavailable, Rendering
 from converter.scene.model import Scene
 from converter.scene.settings import Settings
 
@@ -23,6 +23,7 @@ REASONS = {
     "cutoff": "whether a ray weighs enough to be followed",
     "division": "what is divided by may be 0",
     "range": "a number is beyond those of a double",
+    "degenerate": "what is equal, or nearly so, that no number of digits tells",
 }
 """Why a pixel may be undecided."""
 
@@ -66,6 +67,13 @@ class Certificate:
         off = np.maximum(low - found, found - high).max(axis=2).clip(0)
         result: NDArray[np.int16] = np.where(self.certified, off, 0)
         return result
+
+
+def levels(rendering: Rendering) -> NDArray[np.uint8]:
+    """(height, width, 3), the bytes that a picture is written with."""
+    from native_tracer import quantize
+
+    return np.frombuffer(quantize(rendering.pixels), np.uint8).reshape(rendering.height, rendering.width, 3)
 
 
 def certify(

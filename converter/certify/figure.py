@@ -24,6 +24,7 @@ _COLORS = np.array(
         (0.95, 0.55, 0.80),  # cutoff
         (1.00, 1.00, 1.00),  # division
         (0.80, 0.75, 0.55),  # range
+        (0.45, 0.30, 0.15),  # degenerate
     ],
     np.float32,
 )

@@ -79,7 +79,7 @@ def _method(text: str) -> Any:
 
 def run(arguments: argparse.Namespace) -> int:
     """Certify, judge, and tell."""
-    from converter.certify.certificate import certify
+    from converter.certify.certificate import certify, levels
     from converter.commands.json_out import check_json, write_json
     from converter.commands.notes import load_with_notices
     from converter.commands.progress import ProgressBar
@@ -103,7 +103,7 @@ def run(arguments: argparse.Namespace) -> int:
     for name, renderer, own in chosen:
         with ProgressBar(name, arguments.quiet) as progress, native_instead(name):
             rendering = renderer.render(scene, own, progress)
-        misses[name] = certificate.misses(_levels(rendering))
+        misses[name] = certificate.misses(levels(rendering))
     if arguments.png is not None:
         from converter.certify.figure import draw_certificate
 
@@ -112,16 +112,6 @@ def run(arguments: argparse.Namespace) -> int:
         _print(certificate, misses)
     write_json(arguments.json, _figures(certificate, misses))
     return DISAGREE if any(miss.any() for miss in misses.values()) else OK
-
-
-def _levels(rendering: Any) -> "NDArray[np.uint8]":
-    """The bytes that a picture is written with."""
-    import numpy as np
-
-    from native_tracer import quantize
-
-    shape = rendering.height, rendering.width, 3
-    return np.frombuffer(quantize(rendering.pixels), np.uint8).reshape(shape)
 
 
 def _print(certificate: "Certificate", misses: "dict[str, NDArray[np.int16]]") -> None:

@@ -3,6 +3,7 @@
 import argparse
 from collections.abc import Callable, Sequence
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -32,7 +33,8 @@ def parser() -> Parser:
         "Of scenes that are sampled it draws how the error falls with the number of samples, up to 1024 or --samples,\n"
         "and with the time they take: a curve a method, with how fast it falls. Errors are against the native tracer\n"
         "with more samples of other seeds.\n\n"
-        "With --adaptive it draws what anti-aliasing costs.",
+        "With --adaptive it draws what anti-aliasing costs. With --error certified wrong pixels are certified ones\n"
+        "whose bytes are not those that `whitted certify` proves.",
         "whitted chart scenes/figure1.in -o chart.svg --csv chart.csv",
     )
     result.add_argument("scenes", type=Path, nargs="+", metavar="SCENE", help="scene files, a column of the chart each")
@@ -59,6 +61,13 @@ def parser() -> Parser:
         action="store_true",
         help="what anti-aliasing costs: error against rays and time of as many rays in every pixel, of --adaptive with "
         "several limits, and, --vs povray, of its methods 1 and 2",
+    )
+    group.add_argument(
+        "--error",
+        choices=("pixels", "certified"),
+        default="pixels",
+        help="which share is drawn above: of the pixels those that differ from the reference by more than 1/255, or of "
+        "the certified pixels those that are wrong (%(default)s)",
     )
     group.add_argument("--vs", choices=("povray",), help="with POV-Ray as well, which has to be installed")
     group.add_argument(
@@ -114,7 +123,7 @@ def run(arguments: argparse.Namespace) -> int:
             check_target(file, arguments.scenes)
     check_json(arguments.json, arguments.scenes)
     scenes = _read(arguments, settings)
-    kind = _kind(arguments.adaptive, _are_sampled(scenes, settings))
+    kind = _kind(arguments, _are_sampled(scenes, settings))
     width, height = arguments.size or kind.size
     settings = replace(settings, width=width, height=height)
     studies = _measure(arguments, scenes, settings, kind)
@@ -143,12 +152,17 @@ class _Kind(NamedTuple):
     left_out: Callable[[Any], list[str]]
 
 
-def _kind(adaptive: bool, sampled: bool) -> _Kind:
-    if not adaptive:
-        return _sampled() if sampled else _plain()
-    if sampled:
-        raise UsageError("--adaptive: of scenes that are not sampled")
-    return _antialiasing()
+def _kind(arguments: argparse.Namespace, sampled: bool) -> _Kind:
+    certified = arguments.error == "certified"
+    if sampled and (arguments.adaptive or certified):
+        raise UsageError(
+            f"{'--adaptive' if arguments.adaptive else '--error certified'}: of scenes that are not sampled"
+        )
+    if arguments.adaptive and certified:
+        raise UsageError("--error certified: not with --adaptive, whose pictures have many rays a pixel")
+    if arguments.adaptive:
+        return _antialiasing()
+    return _sampled() if sampled else _plain(certified)
 
 
 def _antialiasing() -> _Kind:
@@ -168,7 +182,7 @@ def _antialiasing() -> _Kind:
     )
 
 
-def _plain() -> _Kind:
+def _plain(certified: bool) -> _Kind:
     from converter.studies import chart_report as report
     from converter.studies.chart_figure import draw_chart
     from converter.studies.measure import measure_scene
@@ -176,7 +190,7 @@ def _plain() -> _Kind:
     return _Kind(
         (800, 600),
         _usual_methods(),
-        measure_scene,
+        partial(measure_scene, certified=certified),
         draw_chart,
         report.to_csv,
         report.to_json,
@@ -272,10 +286,12 @@ def _print(study: "SceneStudy") -> None:
 
     floor = study.reference.floor
     title = f"{study.file}, {study.settings.width} x {study.settings.height} pixels"
-    print_table(report.error_rows(study), report.ERROR_HEADER, report.ERROR_ALIGN, title)
+    print_table(report.error_rows(study), report.error_header(study), report.ERROR_ALIGN, title)
     print(f"\nagainst {report.about_reference(study)}")
     print(f"floor, double against long double: {floor.disagreeing} pixels, RMS {report.figure(floor.rms)}")
-    print(f"{report.ERROR_LEGEND}\n")
+    if study.certified is not None:
+        print(f"certified: {study.certified} pixels")
+    print(f"{report.error_legend(study)}\n")
     title = "seconds of a whole process"
     print_table(report.process_rows(study), report.PROCESS_HEADER, report.PROCESS_ALIGN, title)
     print("\n".join(["", report.PROCESS_LEGEND, *report.left_out_methods(study), ""]))

@@ -178,9 +178,12 @@ class _ErrorPanel:
 
     @classmethod
     def of_shares(cls, axes: "Axes", study: SceneStudy) -> "_ErrorPanel":
+        errors = [study.share(m) for m in study.drawn]
+        if study.certified is not None:
+            axes.set_ylabel("certified pixels that are wrong", fontsize=8)
+            return cls._of(axes, study, errors, {}, percent)
         axes.set_ylabel("pixels that differ by more than 1/255", fontsize=8)
         floor = study.reference.floor
-        errors = [m.difference.disagreeing / m.difference.pixels for m in study.drawn if m.difference]
         return cls._of(axes, study, errors, {_FLOOR: floor.disagreeing / floor.pixels}, percent)
 
     @classmethod
@@ -233,6 +236,8 @@ class _ErrorPanel:
     def _draw_floors(self) -> None:
         """What lies below them is shaded: the reference itself is no better."""
         heights = [self.scale.place(floor) for floor in self.floors.values()]
+        if not heights:
+            return
         self.axes.axhspan(self.scale.bottom, max(heights), color="0.95", lw=0, zorder=-3)
         for y in heights:
             self.axes.axhline(y, color="0.35", lw=0.9, ls=(0, (1, 1.5)), zorder=1)

@@ -18,6 +18,10 @@ ERROR_LEGEND = (
     "disagree: pixels that differ by more than 1/255; RMS: of the channels' differences, where white is 1\n"
     "warm: seconds to render, once all is loaded and compiled, the median; *: no method is both faster and nearer"
 )
+CERTIFIED_HEADER = ("", "wrong", *ERROR_HEADER[2:])
+CERTIFIED_LEGEND = (
+    "wrong: pixels whose bytes are not those that are proven" + ERROR_LEGEND[ERROR_LEGEND.index("; RMS") :]
+)
 PROCESS_HEADER = ("", "whole", *STAGES, "first ever")
 PROCESS_ALIGN = "lrrrrrrr"
 PROCESS_LEGEND = (
@@ -29,7 +33,7 @@ PROCESS_LEGEND = (
 def front_names(study: SceneStudy) -> dict[str, set[str]]:
     """For "share" and "rms" the methods that nothing beats in both that error and time."""
     drawn = study.drawn
-    errors = {"share": [_share(m) for m in drawn], "rms": [_rms(m) for m in drawn]}
+    errors = {"share": [study.share(m) for m in drawn], "rms": [_rms(m) for m in drawn]}
     return {
         name: {drawn[i].method.name for i in pareto_front([(m.warm, e) for m, e in zip(drawn, values, strict=True)])}
         for name, values in errors.items()
@@ -60,9 +64,19 @@ def left_out_methods(study: SceneStudy) -> list[str]:
 
 
 def error_rows(study: SceneStudy) -> list[tuple[str, ...]]:
-    """A row for every method that was drawn, under `ERROR_HEADER`."""
+    """A row for every method that was drawn, under `error_header`."""
     fronts = front_names(study)
     return [_error_row(m, fronts) for m in study.drawn]
+
+
+def error_header(study: SceneStudy) -> tuple[str, ...]:
+    """Their header."""
+    return ERROR_HEADER if study.certified is None else CERTIFIED_HEADER
+
+
+def error_legend(study: SceneStudy) -> str:
+    """What it means."""
+    return ERROR_LEGEND if study.certified is None else CERTIFIED_LEGEND
 
 
 def _error_row(m: Measured, fronts: dict[str, set[str]]) -> tuple[str, ...]:
@@ -70,7 +84,8 @@ def _error_row(m: Measured, fronts: dict[str, set[str]]) -> tuple[str, ...]:
     name, found = m.method.name, m.difference
     share, rms = ("*" if name in fronts[error] else "" for error in ("share", "rms"))
     seconds = map(_seconds, (m.warm, min(m.seconds), max(m.seconds)))
-    return (name, str(found.disagreeing), share, figure(found.rms), rms, *seconds, str(len(m.runs)))
+    wrong = found.disagreeing if m.missed is None else m.missed
+    return (name, str(wrong), share, figure(found.rms), rms, *seconds, str(len(m.runs)))
 
 
 def process_rows(study: SceneStudy) -> list[tuple[str, ...]]:
@@ -128,6 +143,7 @@ def _record(study: SceneStudy, m: Measured) -> dict[str, Any]:
 
 _FIGURES = (
     *("disagreeing", "disagreeing_share", "rms", "mean", "largest", "front_share", "front_rms"),
+    *("certified", "certified_wrong"),
     *("runs", "warm", "warm_least", "warm_most", "cold"),
     *(f"cold_{stage}" for stage in STAGES),
     *("first_ever", "first_ever_render"),
@@ -138,8 +154,9 @@ def _figures(study: SceneStudy, m: Measured) -> dict[str, Any]:
     assert m.difference is not None
     fronts, stages, found = front_names(study), m.stages, m.difference
     values = (
-        *(found.disagreeing, _share(m), found.rms, found.mean, found.largest.difference),
+        *(found.disagreeing, found.disagreeing / found.pixels, found.rms, found.mean, found.largest.difference),
         *(m.method.name in fronts["share"], m.method.name in fronts["rms"]),
+        *(study.certified, m.missed),
         *(len(m.runs), m.warm, min(m.seconds), max(m.seconds), m.cold.whole if m.cold else None),
         *(stages.get(stage) for stage in STAGES),
         *((m.bare.whole, m.bare.stages["render"]) if m.bare else (None, None)),
@@ -183,11 +200,6 @@ def _full_record(study: SceneStudy, m: Measured) -> dict[str, Any]:
         "first_ever_told": m.bare.stages if m.bare else None,
         "statistics": m.statistics,
     }
-
-
-def _share(m: Measured) -> float:
-    assert m.difference is not None
-    return m.difference.disagreeing / m.difference.pixels
 
 
 def _rms(m: Measured) -> float:

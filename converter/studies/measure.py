@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from converter.certify.certificate import Certificate, certify, levels
 from converter.compare.metrics import Difference, compare_pixels
 from converter.renderers.base import Renderer, RendererUnavailable
 from converter.renderers.methods import Method
@@ -41,6 +42,7 @@ class Measured:
         cold: a process of its own, which finds its kernels compiled on disk, if it has any.
         bare: a process of its own, which has to compile its kernels; None for a method without.
         statistics: the renderer's counters.
+        missed: how many certified pixels it gets wrong, where that is asked.
 
     """
 
@@ -52,6 +54,7 @@ class Measured:
     cold: Process | None = None
     bare: Process | None = None
     statistics: Mapping[str, Any] = field(default_factory=dict)
+    missed: int | None = None
 
     @property
     def seconds(self) -> list[float]:
@@ -80,17 +83,27 @@ class Measured:
 
 @dataclass(frozen=True, slots=True)
 class SceneStudy:
-    """All methods on a scene."""
+    """All methods on a scene; `certified` is how many of its pixels are, where errors are told by those."""
 
     file: Path
     settings: Settings
     reference: Reference
     measured: list[Measured]
+    certified: int | None = None
 
     @property
     def drawn(self) -> list[Measured]:
         """Those that were not skipped."""
         return [m for m in self.measured if m.skipped is None]
+
+    def share(self, m: Measured) -> float:
+        """Of all pixels those in which a method's picture differs from the reference by more than 1/255, or of the
+        certified ones those that it gets wrong.
+        """
+        if self.certified is not None and m.missed is not None:
+            return m.missed / max(self.certified, 1)
+        assert m.difference is not None
+        return m.difference.disagreeing / m.difference.pixels
 
 
 class _TooSlow(Exception):  # noqa: N818 - what it says
@@ -106,9 +119,11 @@ def measure_scene(
     variant: str | None = None,
     tell: Tell = lambda what, share: None,
     in_a_process: InAProcess = render_in_a_process,
+    certified: bool = False,
 ) -> SceneStudy:
     """Draw `scene`, read from `file`, by every method: once to warm up, then `runs` times in turns, fewer of slow ones,
-    so that a machine whose speed drifts is fair to all; then in processes of their own.
+    so that a machine whose speed drifts is fair to all; then in processes of their own. With `certified` errors are
+    also told by the pixels whose bytes are proven.
 
     Raises:
         RendererUnavailable: the native tracer, which draws the reference, is not built.
@@ -118,12 +133,13 @@ def measure_scene(
     """
     name = file.stem
     reference = draw_reference(scene, settings, lambda share: tell(f"{name}: the reference", 0.1 * share))
+    certificate = certify(scene, settings) if certified else None
     measured = [Measured(method, method.missing() or method.unfit(scene)) for method in methods]
     renderers = {m.method: m.method.renderer(variant) for m in measured if m.skipped is None}
     for k, m in enumerate(measured):
         tell(f"{name}: {m.method.name}, first picture", 0.1 + 0.25 * k / len(measured))
         if m.skipped is None:
-            _first(m, renderers[m.method], scene, settings, reference)
+            _first(m, renderers[m.method], scene, settings, reference, certificate)
     drawn = [m for m in measured if m.skipped is None]
     for turn in range(runs):
         for k, m in enumerate(drawn):
@@ -138,14 +154,22 @@ def measure_scene(
                 m.bare = in_a_process(m.method.name, file, settings, _variant_of(m.method, variant), empty_cache=True)
         except ProcessFailed as failure:
             m.skipped = f"in a process of its own: {failure}"
-    return SceneStudy(file, settings, reference, measured)
+    count = None if certificate is None else int(certificate.certified.sum())
+    return SceneStudy(file, settings, reference, measured, count)
 
 
 def _variant_of(method: Method, variant: str | None) -> str | None:
     return variant if method.family == "mitsuba" and "variant" not in method.options else None
 
 
-def _first(m: Measured, renderer: Renderer, scene: Scene, settings: Settings, reference: Reference) -> None:
+def _first(
+    m: Measured,
+    renderer: Renderer,
+    scene: Scene,
+    settings: Settings,
+    reference: Reference,
+    certificate: Certificate | None,
+) -> None:
     """The first picture, from which the error is told; a method that cannot draw it is skipped."""
     started = time.perf_counter()
 
@@ -162,3 +186,5 @@ def _first(m: Measured, renderer: Renderer, scene: Scene, settings: Settings, re
     else:
         m.first, m.statistics = rendering.seconds, rendering.statistics
         m.difference = compare_pixels(reference.pixels, np.asarray(rendering.pixels))
+        if certificate is not None:
+            m.missed = int((certificate.misses(levels(rendering)) > 0).sum())
