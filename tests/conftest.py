@@ -1,10 +1,11 @@
-"""Shared by all tests: Mitsuba, started once, and small scenes."""
+"""Shared by all tests: Mitsuba, started once, the command line, and small scenes."""
 
 import signal
 
 import pytest
 import variant
 
+from converter.commands import main
 from converter.scene.model import Camera, Checker, Finish, Light, Object, Polyhedron, Scene, Solid, Sphere
 
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
@@ -42,6 +43,17 @@ def mi():
     import mitsuba
 
     return mitsuba
+
+
+@pytest.fixture
+def whitted(capsys):
+    """Runs `whitted` with words, and returns its exit status, stdout and stderr."""
+
+    def run(*words):
+        status = main.main(list(map(str, words)))
+        return status, *capsys.readouterr()
+
+    return run
 
 
 @pytest.fixture

@@ -9,7 +9,6 @@ from csgs import csg
 from variant import VARIANT
 
 import native_tracer
-from converter.commands import main
 from converter.renderers.adaptive import Adapting, Spread, halves_needed
 from converter.renderers.base import Interrupted
 from converter.renderers.mitsuba import MitsubaRenderer
@@ -298,17 +297,6 @@ def test_a_spread_in_numbers():
 
 
 # ---- The command
-
-
-@pytest.fixture
-def whitted(capsys):
-    """Runs `whitted` and returns exit status, stdout and stderr."""
-
-    def run(*arguments):
-        status = main.main([str(argument) for argument in arguments])
-        return status, *capsys.readouterr()
-
-    return run
 
 
 @pytest.fixture

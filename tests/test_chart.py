@@ -16,7 +16,6 @@ from matplotlib.colors import to_rgb
 from studies_fakes import crowded_study, difference, measured, study
 
 from converter.commands import chart as command
-from converter.commands import main
 from converter.files import check_target, replacing
 from converter.renderers.base import RendererUnavailable, Rendering
 from converter.renderers.methods import METHODS, Method
@@ -575,15 +574,6 @@ def test_a_process_that_hangs(monkeypatch, scene):
 
 
 # ---- The command
-
-
-@pytest.fixture
-def whitted(capsys):
-    def run(*arguments):
-        status = main.main([str(argument) for argument in arguments])
-        return status, *capsys.readouterr()
-
-    return run
 
 
 def test_chart(whitted, scene, tmp_path):

@@ -17,7 +17,6 @@ from converter.batch import pictures
 from converter.batch.pictures import Job, Picture, draw_picture, tiles_of
 from converter.batch.run import Wanted
 from converter.batch.worker import draw_at_worker
-from converter.commands import main
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
 
@@ -30,16 +29,6 @@ def scheduler():
     """The address of a scheduler with two workers, each a process."""
     with LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=":0", silence_logs=50) as local:
         yield local.scheduler_address
-
-
-@pytest.fixture
-def whitted(capsys):
-    def run(*words):
-        status = main.main(list(map(str, words)))
-        told = capsys.readouterr()
-        return status, told.out, told.err
-
-    return run
 
 
 def pids(address):

@@ -56,17 +56,6 @@ def bad_scene(tmp_path):
     return file
 
 
-@pytest.fixture
-def whitted(capsys):
-    """Runs `whitted` and returns exit status, stdout and stderr."""
-
-    def run(*arguments):
-        status = main.main([str(argument) for argument in arguments])
-        return status, *capsys.readouterr()
-
-    return run
-
-
 def rendering_of(width, height, value=0.5):
     pixels = memoryview(array("f", [value] * (3 * width * height))).cast("B").cast("f", (height, width, 3))
     return Rendering(pixels, width, height, {"render": 0.0})

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from converter.commands import main
 from converter.compare.metrics import compare_pixels, count_shifted
 from converter.images.texture import read_texture
 from converter.images.write import write_image
@@ -29,17 +28,6 @@ SCENE = """\
 1 0 sphere 0 -101.5 0 100
 """
 SIZE = ("40", "30")
-
-
-@pytest.fixture
-def whitted(capsys):
-    """Runs `whitted` and returns exit status, stdout and stderr."""
-
-    def run(*arguments):
-        status = main.main([str(argument) for argument in arguments])
-        return status, *capsys.readouterr()
-
-    return run
 
 
 @pytest.fixture

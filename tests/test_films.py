@@ -58,16 +58,6 @@ def film(tmp_path):
     return write
 
 
-@pytest.fixture
-def whitted(capsys):
-    def run(*words):
-        status = main.main(list(map(str, words)))
-        told = capsys.readouterr()
-        return status, told.out, told.err
-
-    return run
-
-
 # ---- Curves
 
 

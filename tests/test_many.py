@@ -6,7 +6,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from converter.commands import main
 from converter.images.texture import read_texture
 
 SCENES = Path(__file__).parents[1] / "scenes"
@@ -16,16 +15,6 @@ NATIVE = ("--method", "native")
 def texels(file):
     texture = read_texture(file)
     return np.reshape(texture.texels, (texture.height, texture.width, 3))
-
-
-@pytest.fixture
-def whitted(capsys):
-    def run(*words):
-        status = main.main(list(map(str, words)))
-        told = capsys.readouterr()
-        return status, told.out, told.err
-
-    return run
 
 
 @pytest.mark.parametrize(

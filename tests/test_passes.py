@@ -9,7 +9,6 @@ import numpy as np
 import pytest
 from variant import VARIANT
 
-from converter.commands import main
 from converter.renderers.base import Interrupted, ResumeError
 from converter.renderers.mitsuba import MitsubaRenderer
 from converter.renderers.native import NativeRenderer
@@ -238,17 +237,6 @@ def test_another_variant_is_refused(mi, small_scene):
 
 
 # ---- The command
-
-
-@pytest.fixture
-def whitted(capsys):
-    """Runs `whitted` and returns exit status, stdout and stderr."""
-
-    def run(*arguments):
-        status = main.main([str(argument) for argument in arguments])
-        return status, *capsys.readouterr()
-
-    return run
 
 
 @pytest.fixture

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from converter.commands import main
 from converter.images.texture import read_texture
 from converter.images.write import write_image
 from converter.renderers.native import NativeRenderer
@@ -221,16 +220,9 @@ def test_silhouettes_are_told():
 # ---- Commands --------------------------------------------------------------------------------------------------------
 
 
-@pytest.fixture
-def whitted(capsys, tmp_path, monkeypatch):
-    """Runs `whitted` and returns exit status, stdout and stderr."""
+@pytest.fixture(autouse=True)
+def here(tmp_path, monkeypatch):
     monkeypatch.chdir(tmp_path)
-
-    def run(*arguments):
-        status = main.main([str(argument) for argument in arguments])
-        return status, *capsys.readouterr()
-
-    return run
 
 
 SCENE = FOLDER / "checker.in"
