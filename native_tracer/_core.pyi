@@ -152,6 +152,8 @@ def render(
     mask: Buffer | None = None,
     signatures: Buffer | None = None,
     least_weight: float = 0.0,
+    picture: tuple[int, int] | None = None,
+    first: tuple[int, int] = (0, 0),
 ) -> None:
     """Draw `scene` into `image`.
 
@@ -163,6 +165,7 @@ def render(
     `native_tracer.passes`: those that are in the sums are not drawn again, and those that become whole are added.
     With a `mask` of bytes, too, height x width, only the pixels are drawn that are not 0 there. `signatures`, of height
     x width uint32, get a word each for what is decided along the pixel's rays that weigh at least `least_weight`.
+    The image may be a part of a `picture` of that width and height, from the pixel `first`, its column and row, on.
     """
 
 def trace_pixel(

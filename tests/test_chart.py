@@ -629,7 +629,7 @@ def test_certified_pixels_are_of_scenes_that_are_not_sampled(whitted, scene, tmp
             ["small.in", "-o", "a.svg", "--size", "40"],
             "argument --size: must be WIDTHxHEIGHT, such as 800x600, found '40'",
         ),
-        (["small.in", "-o", "a.svg", "--size", "0x3"], "argument --size: must lie between 1 and 65535, found 0"),
+        (["small.in", "-o", "a.svg", "--size", "0x3"], "argument --size: must lie between 1 and 1000000, found 0"),
         (["small.in", "-o", "a.svg", "--runs", "1"], "argument --runs: must lie between 2 and 1000, found 1"),
         (["small.in", "-o", "a.svg", "--methods", "native,nativ"], "argument --methods: there is no method 'nativ'"),
         (

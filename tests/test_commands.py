@@ -215,8 +215,8 @@ def test_raytrace_goes_by_a_known_ending(scene, tmp_path):
         (["a.in"], "required: OUT"),
         (["a.in", "a.ppm", "40"], "a WIDTH needs a HEIGHT after it"),
         (["a.in", "a.ppm", "40", "x"], "must be a whole number, found 'x'"),
-        (["a.in", "a.ppm", "0", "3"], "must lie between 1 and 65535, found 0"),
-        (["a.in", "a.ppm", "3", "65536"], "must lie between 1 and 65535, found 65536"),
+        (["a.in", "a.ppm", "0", "3"], "must lie between 1 and 1000000, found 0"),
+        (["a.in", "a.ppm", "3", "1000001"], "must lie between 1 and 1000000, found 1000001"),
         (["a.in", "a.ppm", "4", "3", "2"], "unrecognized arguments: 2"),
     ],
 )

@@ -5,8 +5,13 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from variant import VARIANT
 
 from converter.images.texture import read_texture
+from converter.renderers.mitsuba import MitsubaRenderer
+from converter.renderers.native import NativeRenderer
+from converter.scene.parser import load_scene
+from converter.scene.settings import Settings
 
 SCENES = Path(__file__).parents[1] / "scenes"
 NATIVE = ("--method", "native")
@@ -42,6 +47,18 @@ def test_a_part_by_mitsuba(whitted, tmp_path, samples):
     part = (slice(5, 17), slice(3, 30))
     words = (whitted, tmp_path, ("--crop", "3,5,30,17"), part, samples, "mitsuba-analytic")
     test_a_part_has_the_pixels_of_the_whole(*words)
+
+
+@pytest.mark.parametrize("renderer", [NativeRenderer(), MitsubaRenderer(VARIANT)])
+def test_a_part_of_what_no_memory_holds(mi, renderer):
+    """Of a picture of 90 GiB, with more pixels than 32 bits can number."""
+    scene = load_scene(SCENES / "figure1.in")
+    left, top = 51_000, 66_000
+    settings = Settings(100_000, 75_000, crop=(left, top, left + 3, top + 2))
+    pixels = np.asarray(renderer.render(scene, settings).pixels)
+    places = [(left + column, top + row) for row in range(2) for column in range(3)]
+    records = NativeRenderer().trace_pixels(scene, settings, places)
+    assert pixels.reshape(-1, 3) == pytest.approx(np.array([record.color for record in records]), abs=1e-6)
 
 
 @pytest.mark.parametrize(

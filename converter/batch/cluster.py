@@ -28,7 +28,7 @@ from converter.scene.needs import scene_needs
 
 AHEAD = 3
 """Tasks at a time, for each worker: one is at work, the others wait."""
-TASK_SECONDS = 0.25
+TASK_SECONDS = 0.5
 """What a task takes, of pictures that take less."""
 PATIENCE = 20.0
 """Seconds to wait for a scheduler that does not answer."""

@@ -11,7 +11,7 @@ from converter.scene.depth import MAX_DEPTH
 from converter.scene.model import Color
 from converter.scene.settings import MOST_THREADS, SAMPLES, Settings
 
-MAX_SIZE = 65535
+MAX_SIZE = 1_000_000
 MAX_SAMPLES = 65536
 DEFAULTS = Settings()
 

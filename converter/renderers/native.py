@@ -71,10 +71,9 @@ class NativeRenderer:
         scene = simplified(scene)
         needs = scene_needs(scene, settings)
         native_scene = build_scene(scene, needs)
-        image = tracer.Image(settings.width, settings.height)
+        image = tracer.Image(*settings.drawn_size)
         passes = _passes(needs.samples)
-        in_passes = len(passes) > 1 or settings.crop is not None  # only then there are masks
-        sums = _pass_sums(tracer, settings, start) if in_passes else None
+        sums = _pass_sums(tracer, settings, start) if len(passes) > 1 else None
         built = time.perf_counter()
 
         def rendering() -> Rendering:
@@ -83,16 +82,14 @@ class NativeRenderer:
             rays = sum(statistics[kind] for kind in _RAYS)
             whole = None
             if sums is not None and sums.passes > 0:
-                colors, too_deep = _part(sums.colors, settings), _part(sums.too_deep, settings)
-                whole = Passes(sums.passes, len(passes), colors, too_deep, {"counts": sums.counts})
-            pixels = _part(image.pixels, settings)
-            return Rendering(pixels, *settings.drawn_size, seconds, {"rays": rays, **statistics}, whole)
+                whole = Passes(sums.passes, len(passes), sums.colors, sums.too_deep, {"counts": sums.counts})
+            return Rendering(image.pixels, *settings.drawn_size, seconds, {"rays": rays, **statistics}, whole)
 
         threads = settings.threads or available_cores()
         try:
-            options = self._options(settings, needs) | ({"passes": passes, "sums": sums} if sums is not None else {})
-            if settings.crop is not None:
-                options["mask"] = _mask(settings)
+            options = self._options(settings, needs) | _part(settings)
+            if sums is not None:
+                options |= {"passes": passes, "sums": sums}
             tracer.render(native_scene, image, threads=threads, progress=progress, **options)
         except KeyboardInterrupt:
             raise Interrupted(rendering()) from None
@@ -200,43 +197,19 @@ def _halves(samples: int) -> list[list[int]]:
     return halves(samples)
 
 
+def _part(settings: Settings) -> dict[str, Any]:
+    return {"picture": (settings.width, settings.height), "first": settings.drawn[:2]}
+
+
 def _pass_sums(tracer: ModuleType, settings: Settings, start: Passes | None) -> Any:
     """The tracer's sums of passes: none yet, or those to start from."""
-    sums = tracer.PassSums(settings.width, settings.height)
+    sums = tracer.PassSums(*settings.drawn_size)
     if start is not None:
         sums.passes = start.done
-        if settings.crop is None:
-            for target, source in ((sums.colors, start.colors), (sums.too_deep, start.too_deep)):
-                target.cast("B")[:] = memoryview(source).cast("B")
-        else:
-            import numpy as np
-
-            width, height = settings.drawn_size
-            _cut(sums.colors, settings)[:] = np.frombuffer(start.colors, np.float64).reshape(height, width, 3)
-            _cut(sums.too_deep, settings)[:] = np.frombuffer(start.too_deep, np.uint8).reshape(height, width)
+        for target, source in ((sums.colors, start.colors), (sums.too_deep, start.too_deep)):
+            target.cast("B")[:] = memoryview(source).cast("B")
         sums.counts = start.notes["counts"]
     return sums
-
-
-def _mask(settings: Settings) -> Any:
-    """Which pixels of the picture are drawn, a byte for each."""
-    import numpy as np
-
-    mask = np.zeros((settings.height, settings.width), np.uint8)
-    _cut(mask, settings)[:] = 1
-    return mask
-
-
-def _part(buffer: Any, settings: Settings) -> Any:
-    """What a buffer of the picture's rows holds of the part that is drawn; a copy, unless that is all."""
-    return buffer if settings.crop is None else _cut(buffer, settings).copy()
-
-
-def _cut(buffer: Any, settings: Settings) -> Any:
-    import numpy as np
-
-    left, top, right, bottom = settings.drawn
-    return np.asarray(buffer)[top:bottom, left:right]
 
 
 def native_module() -> ModuleType:

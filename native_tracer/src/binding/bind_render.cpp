@@ -3,6 +3,7 @@
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
 #include <nanobind/stl/optional.h>
+#include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
 
@@ -46,7 +47,7 @@ RenderSettings settings_of(int width, int height, int samples, std::uint32_t see
     if (max_depth < 0) {
         throw std::invalid_argument("max_depth must not be negative");
     }
-    RenderSettings settings{width, height, grid, seed, independent, corner, blinn, cutoff, max_depth};
+    RenderSettings settings{width, height, {0, 0, width}, grid, seed, independent, corner, blinn, cutoff, max_depth};
     if (precision == "float") {
         settings.precision = Precision::single;
     } else if (precision == "long double") {
@@ -97,9 +98,16 @@ void render_image(const SceneDescription& scene, Image& image, int samples, std:
                   bool corner, bool blinn, double cutoff, int max_depth, const std::string& precision,
                   const std::string& search, int threads, nb::object progress, const std::string& instructions,
                   const std::vector<Places>& passes, PassSums* sums, std::optional<Mask> mask,
-                  std::optional<Signatures> signatures, double least_weight) {
-    const RenderSettings settings = settings_of(image.width(), image.height(), samples, seed, independent, corner,
-                                                blinn, cutoff, max_depth, precision, search);
+                  std::optional<Signatures> signatures, double least_weight, std::optional<std::pair<int, int>> picture,
+                  const std::pair<int, int>& first) {
+    const auto [width, height] = picture.value_or(std::pair(image.width(), image.height()));
+    RenderSettings settings =
+        settings_of(width, height, samples, seed, independent, corner, blinn, cutoff, max_depth, precision, search);
+    settings.part = {first.first, first.second, image.width()};
+    if (first.first < 0 || first.second < 0 || image.width() > width - first.first ||
+        image.height() > height - first.second) {
+        throw std::invalid_argument("the image does not lie in the picture");
+    }
     if (!progress.is_none() && !PyCallable_Check(progress.ptr())) {
         throw nb::type_error("progress must be callable");
     }
@@ -358,14 +366,16 @@ void bind_render(nb::module_& module) {
         "independent"_a = false, "corner"_a = true, "blinn"_a = false, "cutoff"_a, "max_depth"_a,
         "precision"_a = "double", "search"_a = "auto", "threads"_a = 0, "progress"_a = nb::none(),
         "instructions"_a = "", "passes"_a = nb::list(), "sums"_a = nb::none(), "mask"_a = nb::none(),
-        "signatures"_a = nb::none(), "least_weight"_a = 0.0,
+        "signatures"_a = nb::none(), "least_weight"_a = 0.0, "picture"_a = nb::none(), "first"_a = std::pair(0, 0),
         "Draw `scene` into `image`. `progress` is called about 20 times a second with the finished share; what\n"
         "it raises, and Ctrl-C, stop the rendering, and what is finished stays in the image.\n"
         "With `sums`, of the image's size, it is drawn in `passes`, which name each sample once at most; passes that "
         "are\n"
         "in the sums are not drawn again, and those that become whole are added. With a `mask` of bytes, too, height\n"
         "x width, only the pixels are drawn that are not 0 there. `signatures`, of uint32, get a word each for what\n"
-        "is decided along the pixel's rays that weigh at least `least_weight`.");
+        "is decided along the pixel's rays that weigh at least `least_weight`. The image may be a part of a `picture` "
+        "of\n"
+        "that width and height, from the pixel `first`, its column and row, on.");
     module.def("trace_pixel", &trace_pixel, "scene"_a, "width"_a, "height"_a, "x"_a, "y"_a, nb::kw_only(),
                "samples"_a = 1, "seed"_a = 0, "independent"_a = false, "corner"_a = true, "blinn"_a = false, "cutoff"_a,
                "max_depth"_a, "precision"_a = "double", "search"_a = "auto",

@@ -114,8 +114,15 @@ enum class Precision { single, normal, extended };  // float, double, long doubl
 // How the objects are searched: one by one, or by a tree over their boxes; by default whichever is faster.
 enum class Search { automatic, brute, bvh };
 
+// The part of a picture that is drawn: the column and row of its first pixel, and its columns. Tiles, and what is kept
+// for each pixel, are the part's own.
+struct PicturePart {
+    int left, top, width;
+};
+
 struct RenderSettings {
-    int width, height;
+    int width, height;  // of the whole picture
+    PicturePart part;
     int grid = 1;  // grid x grid rays a pixel
     std::uint32_t seed = 0;
     bool independent = false;  // a pixel's points, rather than stratified

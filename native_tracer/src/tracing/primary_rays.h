@@ -34,7 +34,7 @@ class PrimaryRays {
           shift_(settings.corner ? Real(0.5) : Real(0)),
           reach_(max_norm(Vector<Lanes<Real>>(camera.eye()))),
           mask_(mask),
-          picture_width_(settings.width),
+          part_(settings.part),
           count_(tile.right - tile.left),
           row_(tile.top) {
         if (mask_ != nullptr) {
@@ -50,7 +50,8 @@ class PrimaryRays {
         keys.clear();
         for (int row = tile_.top; row < tile_.bottom; ++row) {
             for (int column = tile_.left; column < tile_.right; ++column) {
-                keys.push_back({pixel_key(seed, static_cast<std::uint32_t>(column), static_cast<std::uint32_t>(row))});
+                keys.push_back({pixel_key(seed, static_cast<std::uint32_t>(part_.left + column),
+                                          static_cast<std::uint32_t>(part_.top + row))});
             }
         }
     }
@@ -65,9 +66,10 @@ class PrimaryRays {
     // The next rays of the row, as many as there are lanes and pixels left.
     Group<Real> next() {
         using L = Lanes<Real>;
-        const L columns = mask_ != nullptr ? L::gather([&](int lane) { return static_cast<Real>(masked_column(lane)); })
-                                           : L(static_cast<Real>(tile_.left + index_)) + L::numbers();
-        const L rows = static_cast<Real>(row_);
+        const L columns = mask_ != nullptr
+                              ? L::gather([&](int lane) { return static_cast<Real>(part_.left + masked_column(lane)); })
+                              : L(static_cast<Real>(part_.left + tile_.left + index_)) + L::numbers();
+        const L rows = static_cast<Real>(part_.top + row_);
         const int place = places_ ? (*places_)[static_cast<std::size_t>(sample_)] : sample_;
         Group<Real> group;
         group.rays.origin = Vector<L>(camera_.eye());
@@ -112,8 +114,7 @@ class PrimaryRays {
     // Goes to the next row that has any of the pixels wanted, if this has none, and finds them.
     void find_pixels() {
         for (; row_ != tile_.bottom; ++row_) {
-            const unsigned char* row =
-                mask_ + static_cast<std::size_t>(row_) * static_cast<std::size_t>(picture_width_);
+            const unsigned char* row = mask_ + static_cast<std::size_t>(row_) * static_cast<std::size_t>(part_.width);
             count_ = 0;
             for (int column = tile_.left; column < tile_.right; ++column) {
                 if (row[column] != 0) {
@@ -141,8 +142,8 @@ class PrimaryRays {
     const int samples_;
     const Real shift_;
     const Lanes<Real> reach_;          // of the eye
-    const unsigned char* const mask_;  // of the whole picture, 1 where a pixel is wanted; null: all are
-    const int picture_width_;
+    const unsigned char* const mask_;  // of the part, 1 where a pixel is wanted; null: all are
+    const PicturePart part_;
     std::array<int, tile_width> columns_;  // of the pixels that are wanted in the row, if not all are
     int count_;                            // how many these are
     int row_, index_ = 0;

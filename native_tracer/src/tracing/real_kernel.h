@@ -100,8 +100,9 @@ class RealKernel final : public Kernel {
         std::size_t pixel = 0;
         for (int row = tile.top; row < tile.bottom; ++row) {
             for (int column = tile.left; column < tile.right; ++column, ++pixel) {
-                const std::size_t index = static_cast<std::size_t>(row) * static_cast<std::size_t>(settings_.width) +
-                                          static_cast<std::size_t>(column);
+                const std::size_t index =
+                    static_cast<std::size_t>(row) * static_cast<std::size_t>(settings_.part.width) +
+                    static_cast<std::size_t>(column);
                 store(Pixel{index, pixel, sums[pixel], tracer.too_deep(pixel)});
             }
         }
