@@ -35,6 +35,8 @@ class Certificate:
     Attributes:
         low, high: (height, width, 3) uint8, each certified byte; where a colour lies so near the edge between two
             levels that storing it as a float may take it over, `high` is one more, and either is right.
+        colors: (height, width, 3) float64, linear RGB, not clamped: of each certified pixel a colour that lies in the
+            interval that encloses the true one; NaN where a pixel is undecided.
         undecided: (height, width) uint8, 0 where a pixel is certified, else the reason's place among `REASONS`, from 1.
         rung: (height, width) uint8, of how many digits were needed, an index of `digits`.
         tied: (height, width) bool, where the format's rule for ties has decided something that is equal to 80 digits.
@@ -44,6 +46,7 @@ class Certificate:
 
     low: NDArray[np.uint8]
     high: NDArray[np.uint8]
+    colors: NDArray[np.float64]
     undecided: NDArray[np.uint8]
     rung: NDArray[np.uint8]
     tied: NDArray[np.bool_]
@@ -112,9 +115,11 @@ def certify(
     seconds["certify"] = time.perf_counter() - started - seconds["build"]
     names = certified_tracer.reasons
     order = np.array([0] + [list(REASONS).index(name) + 1 for name in names[1:]], np.uint8)
+    found["color"][found["reason"] != 0] = np.nan
     return Certificate(
         found["low"].reshape(height, width, 3),
         found["high"].reshape(height, width, 3),
+        found["color"].reshape(height, width, 3),
         order[found["reason"]].reshape(height, width),
         found["rung"].reshape(height, width),
         found["tied"].reshape(height, width).astype(np.bool_),
