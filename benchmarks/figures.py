@@ -52,6 +52,8 @@ RANDOM_SCENES = 200
 MOST_EXPLAINED = 100
 """Pixels of a picture whose rays are compared: of glass csgs some take a second."""
 POVRAY = "POV-Ray 3.7, its trace time"
+NAMED = [kind for kind in CLASSES if kind != "not determined by the scene"]
+"""Which pixels those are is not asked."""
 LIMITS = (8, 24, 40)
 """Of adaptive sampling, in levels of 255."""
 MEASURED = 1 / 16
@@ -169,11 +171,11 @@ def classes() -> None:
     )
     print(f"up to {MOST_EXPLAINED} a scene")
     numbers = {
-        name: [disagreeing[name], by_class.total(), *(by_class[kind] for kind in CLASSES)]
+        name: [disagreeing[name], by_class.total(), *(by_class[kind] for kind in NAMED)]
         for name, by_class in counts.items()
     }
     rows = ([name, *map(str, row)] for name, row in numbers.items())
-    print_table("classes", ["", "pixels", "of these", *CLASSES], rows)
+    print_table("classes", ["", "pixels", "of these", *NAMED], rows)
 
 
 def speed() -> None:

@@ -1,4 +1,5 @@
 from collections.abc import Callable, Sequence
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -62,5 +63,5 @@ def certify(
     last: int,
     threads: int,
     progress: Callable[[float], None] | None = None,
-) -> dict[str, NDArray[np.uint8]]: ...
+) -> dict[str, NDArray[Any]]: ...
 def miss(function: str, arguments: Sequence[Number], truth: Number, rung: int) -> tuple[float, float]: ...

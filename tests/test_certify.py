@@ -7,7 +7,9 @@ from decimal import Decimal, localcontext
 from fractions import Fraction
 from pathlib import Path
 
+import numpy as np
 import pytest
+from tie_scenes import TIE_SCENES
 
 import certified_tracer
 from converter.certify.certificate import certify, levels
@@ -15,6 +17,7 @@ from converter.certify.numbers import number
 from converter.commands.main import main
 from converter.renderers.base import EffectUnavailable
 from converter.renderers.native import NativeRenderer
+from converter.scene.model import Light
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
 from converter.studies.exact.arithmetic import Decimals, Undecided
@@ -130,3 +133,15 @@ def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
     assert png.stat().st_size > 0
     assert main(["certify", scene, "40", "30", "--method", "native:max_depth=0", "-q"]) == 1
     assert "are wrong" in capsys.readouterr().out
+
+
+def test_what_no_number_of_digits_decides() -> None:
+    """A light at a distance for which nothing tells what is 0 leaves all ties open, and nothing else."""
+    _, make, settings = TIE_SCENES["tiles of 0.3"]
+    scene = make()
+    far = Light((0.0, 2e16, 0.0), (0.0, 0.0, 0.0), (1.0, 0.0, 0.0))
+    known, unknown = certify(scene, settings), certify(replace(scene, lights=(*scene.lights, far)), settings)
+    assert known.certified.all()
+    assert unknown.counts() == {"degenerate": known.tied.sum()}
+    assert (known.low == unknown.low)[~known.tied].all()
+    assert np.isnan(unknown.colors).all(axis=2).sum() == known.tied.sum()

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
+from tie_scenes import TIE_SCENES
 
 from converter.compare.metrics import compare_pixels, count_shifted
 from converter.images.texture import read_texture
@@ -14,6 +15,7 @@ from converter.images.write import write_image
 from converter.renderers.native import NativeRenderer
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
+from converter.scene.writer import write_scene
 
 SCENE = """\
 0 0 -10   0 0 0   0 1 0   40
@@ -248,3 +250,33 @@ def test_pixels_that_are_off_by_less_than_a_pixel():
     assert count_shifted(reference, reference) == 0
     other[2, 2] = np.nan
     assert count_shifted(reference, other) == 5
+
+
+def test_what_the_scene_does_not_determine_is_a_class(whitted, tmp_path, monkeypatch):
+    """Rows of tiles whose edges lie where rays meet the floor: single precision decides no ties, and `widen` tells that
+    tenths are not known so well.
+    """
+    monkeypatch.chdir(tmp_path)
+    _, make, settings = TIE_SCENES["tiles of 0.3"]
+    (tmp_path / "a.in").write_text(write_scene(make()))
+    words = ["compare", "a.in", str(settings.width), str(settings.height), "--method", "native-float", "--limit", "100"]
+    found = {}
+    for ulps in ("0", "1"):
+        status, out, _ = whitted(*words, "--widen", ulps, "--json", "a.json")
+        assert status == 0
+        found[ulps] = json.loads(Path("a.json").read_text())
+        told = f"{found[ulps]['undetermined']} of {found[ulps]['disagreeing']}"
+        assert ["not", "determined", "by", "the", "scene", *told.split()] in [line.split() for line in out.splitlines()]
+    assert found["0"]["undetermined"] == 0
+    assert found["1"]["undetermined"] == found["1"]["disagreeing"] > 20
+    assert found["1"]["classes"]["counts"] == {"not determined by the scene": found["1"]["classes"]["traced"]}
+    assert "not determined by the scene" not in found["0"]["classes"]["counts"]
+
+
+def test_what_is_not_determined_of_a_scene_and_a_picture(whitted, scene, draw):
+    draw("mine.png", specular="blinn")
+    _, out, _ = whitted("compare", scene, "mine.png", "--widen", "1")
+    assert re.search(r"not determined by the scene +0 of \d+", out)
+    status, _, err = whitted("compare", "mine.png", "mine.png", "--widen", "1")
+    assert status == 2
+    assert "--widen means nothing for two images" in err

@@ -30,7 +30,7 @@ from converter.studies.stability_page import write_page
 from converter.studies.stability_pictures import SEEN
 from converter.studies.stability_report import failures, number, silences, table_header, table_rows, to_json
 from converter.studies.svg import compact
-from converter.studies.worker import DrawingFailed, TookTooLong, Worker
+from converter.studies.worker import CERTIFICATE, DrawingFailed, TookTooLong, Worker
 
 SMALL = settings(4, 2)
 BALL = scene(camera((0.0, 0.0, 4.0), (0.0, 0.0, 0.0)), [(sphere((0.0, 0.0, 0.0), 1.0), WHITE, GLOW)])
@@ -131,10 +131,30 @@ def test_a_method_that_fails_is_asked_again():
     assert [outcome.share for outcome in study.outcomes["native-float"]] == [0, 0, 1, 1]
 
 
+def test_what_is_proven_is_the_truth_and_what_is_drawn_where_nothing_is():
+    class Proves(Fake):
+        def render(self, method, variant, scene, settings, seconds):
+            if method == CERTIFICATE:
+                proven = np.full((2, 4, 3), 1.0, np.float32)
+                proven[:, int(scene.ambient[0]) :] = np.nan
+                return proven
+            if method == TRUTH:
+                self.asked.append((method, scene.ambient[0]))
+                return np.full((2, 4, 3), 0.5, np.float32)
+            return super().render(method, variant, scene, settings, seconds)
+
+    made, fake = family((1.0, 3.0, 4.0)), Proves(0)
+    unknown = replace(made, case=lambda value: replace(made.case(value), truth=None))
+    study = study_family(unknown, [NATIVE], fake)
+    kept = next(outcome for outcome in study.outcomes["native"] if outcome.truth is not None)
+    assert kept.truth[:, :, 0].tolist() == [[1.0, 0.5, 0.5, 0.5]] * 2
+    assert [value for method, value in fake.asked if method == TRUTH] == [1.0, 3.0]
+
+
 def test_without_a_truth_there_is_no_outcome():
     class Broken(Fake):
         def render(self, method, variant, scene, settings, seconds):
-            if method == TRUTH:
+            if method in (TRUTH, CERTIFICATE):
                 raise DrawingFailed("not enough memory")
             return super().render(method, variant, scene, settings, seconds)
 
@@ -174,6 +194,7 @@ def test_a_worker_draws_what_the_method_draws():
             worker.render("native", None, BALL, replace(SMALL, samples=3), 60.0)
         # It lives on.
         assert (worker.render("native", None, BALL, SMALL, 60.0) == drawn).all()
+        assert np.allclose(worker.render(CERTIFICATE, None, BALL, SMALL, 60.0), drawn, atol=1e-6)
 
 
 def test_a_worker_that_hangs_or_dies_is_replaced(monkeypatch):

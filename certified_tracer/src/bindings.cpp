@@ -103,9 +103,11 @@ nb::dict certify_pixels(const Scene& scene, const Pixels& pixels, int first, int
         results = certify(scene, places, first, last, threads, watch);
     }
     std::vector<std::uint8_t> low, high, reason, rung, tied;
+    std::vector<double> color;
     for (const Pixel& pixel : results) {
         low.insert(low.end(), pixel.low.begin(), pixel.low.end());
         high.insert(high.end(), pixel.high.begin(), pixel.high.end());
+        color.insert(color.end(), pixel.color.begin(), pixel.color.end());
         reason.push_back(static_cast<std::uint8_t>(pixel.reason));
         rung.push_back(pixel.rung);
         tied.push_back(pixel.tied);
@@ -113,6 +115,7 @@ nb::dict certify_pixels(const Scene& scene, const Pixels& pixels, int first, int
     nb::dict found;
     found["low"] = owned(std::move(low), {count, 3});
     found["high"] = owned(std::move(high), {count, 3});
+    found["color"] = owned(std::move(color), {count, 3});
     found["reason"] = owned(std::move(reason), {count});
     found["rung"] = owned(std::move(rung), {count});
     found["tied"] = owned(std::move(tied), {count});

@@ -63,6 +63,7 @@ class Rung {
             if (!settled) {
                 result.reason = tracer.doubt() != Reason::none ? tracer.doubt() : Reason::byte;
             }
+            result.color = {color.x.middle(), color.y.middle(), color.z.middle()};
             result.tied = tracer.tied();
         } catch (const Undecided& undecided) {
             result.reason = undecided.reason;

@@ -13,9 +13,11 @@
 namespace certified {
 
 // What is known of a pixel. Its bytes are `low`, or `high`, which is the same or, where a colour lies so near the edge
-// between two levels that storing it as a float may take it over, the next.
+// between two levels that storing it as a float may take it over, the next. `color` lies in what encloses the true one,
+// before that is clamped.
 struct Pixel {
     std::array<std::uint8_t, 3> low{}, high{};
+    std::array<double, 3> color{};
     Reason reason = Reason::none;
     std::uint8_t rung = 0;
     bool tied = false;  // the rule for ties decided something

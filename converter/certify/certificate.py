@@ -2,6 +2,7 @@
 
 import time
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,6 +27,8 @@ REASONS = {
     "degenerate": "what is equal, or nearly so, that no number of digits tells",
 }
 """Why a pixel may be undecided."""
+DETERMINED = ("byte", "range")
+"""Of these, what does not say that a scene leaves a decision open: a colour may lie between two levels."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -35,6 +38,8 @@ class Certificate:
     Attributes:
         low, high: (height, width, 3) uint8, each certified byte; where a colour lies so near the edge between two
             levels that storing it as a float may take it over, `high` is one more, and either is right.
+        colors: (height, width, 3) float64, linear RGB, not clamped: of each certified pixel a colour that lies in the
+            interval that encloses the true one; NaN where a pixel is undecided.
         undecided: (height, width) uint8, 0 where a pixel is certified, else the reason's place among `REASONS`, from 1.
         rung: (height, width) uint8, of how many digits were needed, an index of `digits`.
         tied: (height, width) bool, where the format's rule for ties has decided something that is equal to 80 digits.
@@ -44,6 +49,7 @@ class Certificate:
 
     low: NDArray[np.uint8]
     high: NDArray[np.uint8]
+    colors: NDArray[np.float64]
     undecided: NDArray[np.uint8]
     rung: NDArray[np.uint8]
     tied: NDArray[np.bool_]
@@ -79,7 +85,7 @@ def levels(rendering: Rendering) -> NDArray[np.uint8]:
 def certify(
     scene: Scene, settings: Settings, ulps: float = 0.0, progress: Progress | None = None, first: int = 0
 ) -> Certificate:
-    """Certify the pixels of `scene`, drawn with `settings`.
+    """Certify all pixels of `scene`, drawn with `settings`.
 
     Args:
         scene: the scene; its numbers are the decimal numbers that a file has for them.
@@ -93,6 +99,58 @@ def certify(
         ValueError: a texture cannot be read.
 
     """
+    height, width = settings.height, settings.width
+    places = np.argwhere(np.ones((height, width), np.bool_))
+    found, seconds = _prove(scene, settings, places, ulps, progress, first)
+    found["color"][found["reason"] != 0] = np.nan
+    return Certificate(
+        found["low"].reshape(height, width, 3),
+        found["high"].reshape(height, width, 3),
+        found["color"].reshape(height, width, 3),
+        found["reason"].reshape(height, width),
+        found["rung"].reshape(height, width),
+        found["tied"].reshape(height, width).astype(np.bool_),
+        tuple(found["digits"].tolist()),
+        seconds,
+    )
+
+
+def undetermined(
+    scene: Scene,
+    settings: Settings,
+    ulps: float,
+    where: NDArray[np.bool_] | None = None,
+    progress: Progress | None = None,
+) -> NDArray[np.bool_]:
+    """(height, width), pixels that the scene does not determine, if its numbers that are not whole are known to so many
+    units in the last place of a double only: where some decision, what a ray meets or which tile, can go either way.
+    Exact ties are among them. Only the pixels in `where` are looked at.
+
+    Raises:
+        RendererUnavailable: the module is not built, or the scene is sampled.
+        ValueError: a texture cannot be read.
+
+    """
+    result = np.zeros((settings.height, settings.width), np.bool_)
+    places = np.argwhere(~result if where is None else where)
+    if len(places):
+        found, _ = _prove(scene, settings, places, ulps, progress)
+        left_open = np.array([False] + [name not in DETERMINED for name in REASONS])
+        result[tuple(places.T)] = left_open[found["reason"]]
+    return result
+
+
+def _prove(
+    scene: Scene,
+    settings: Settings,
+    places: NDArray[np.int64],
+    ulps: float,
+    progress: Progress | None,
+    first: int = 0,
+) -> tuple[dict[str, NDArray[Any]], dict[str, float]]:
+    """What the tracer of intervals tells of pixels, (n, 2) rows and columns, with reasons as in a `Certificate`; and
+    seconds by stage.
+    """
     try:
         import certified_tracer
     except ImportError as error:
@@ -101,23 +159,11 @@ def certify(
 
     started = time.perf_counter()
     built = certified_scene(scene, settings, ulps)
-    height, width = settings.height, settings.width
-    rows, columns = np.mgrid[:height, :width]
-    pixels = np.stack([columns, rows], axis=-1).reshape(-1, 2).astype(np.int32)
-    last = (
-        len(certified_tracer.digits) - 1 if ulps == 0 else 1
-    )  # more digits tell nothing of numbers that are not known
     seconds = {"build": time.perf_counter() - started}
+    pixels = np.ascontiguousarray(places[:, ::-1].astype(np.int32))
+    # More digits tell nothing of numbers that are not known.
+    last = len(certified_tracer.digits) - 1 if ulps == 0 else 1
     found = certified_tracer.certify(built, pixels, first, last, settings.threads or available_cores(), progress)
     seconds["certify"] = time.perf_counter() - started - seconds["build"]
-    names = certified_tracer.reasons
-    order = np.array([0] + [list(REASONS).index(name) + 1 for name in names[1:]], np.uint8)
-    return Certificate(
-        found["low"].reshape(height, width, 3),
-        found["high"].reshape(height, width, 3),
-        order[found["reason"]].reshape(height, width),
-        found["rung"].reshape(height, width),
-        found["tied"].reshape(height, width).astype(np.bool_),
-        tuple(certified_tracer.digits),
-        seconds,
-    )
+    order = np.array([0] + [list(REASONS).index(name) + 1 for name in certified_tracer.reasons[1:]], np.uint8)
+    return {**found, "reason": order[found["reason"]], "digits": np.array(certified_tracer.digits)}, seconds

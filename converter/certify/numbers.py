@@ -13,7 +13,7 @@ MOST_PARTS = 9
 
 def exact(value: float) -> Fraction:
     """The decimal number that a file has for `value`: the shortest one whose double it is."""
-    return Fraction(int(value)) if value == int(value) else Fraction(repr(value))
+    return Fraction(int(value)) if value == int(value) else Fraction(repr(float(value)))
 
 
 def number(value: float, ulps: float = 0.0) -> Number:

@@ -31,6 +31,9 @@ from converter.descriptors import STANDARD_OUTPUT
 from converter.renderers.base import tells_rays
 
 if TYPE_CHECKING:
+    import numpy as np
+    from numpy.typing import NDArray
+
     from converter.compare.classes import Explanation
     from converter.compare.metrics import Pixels
     from converter.compare.report import Pictures, Report
@@ -102,6 +105,13 @@ def parser() -> Parser:
         help="look for the reason in the rays behind so many of the disagreeing pixels (%(default)s)",
     )
     group.add_argument(
+        "--widen",
+        type=not_negative,
+        metavar="ULPS",
+        help="tell which of the disagreeing pixels the scene does not determine, if its numbers that are not whole are "
+        "known to so many units in the last place of a double only",
+    )
+    group.add_argument(
         "--json",
         action=TextResult,
         metavar="FILE",
@@ -149,8 +159,12 @@ def run(arguments: argparse.Namespace) -> int:
         chosen = _chosen(arguments, compared, image)
         scene, pictures = _draw(chosen, compared, image, arguments)
         report = make_report(pictures, arguments.limit)
+        undetermined = None
+        if arguments.widen is not None:
+            undetermined = _undetermined(scene, chosen[0].settings, report, arguments)
+            report.undetermined = int(undetermined.sum())
         if image is None and report.difference.disagreeing and arguments.explain:
-            report.explanation = _explained(scene, chosen, report, arguments)
+            report.explanation = _explained(scene, chosen, report, arguments, undetermined)
     if arguments.png is not None:
         from converter.compare.figure import draw_figure
 
@@ -335,8 +349,28 @@ def _clamp(pictures: "Pictures", lesser: Path, quiet: bool) -> None:
 # ----------------------------------------------------------------------------------------------------- what is told
 
 
+def _undetermined(
+    scene: "Scene", settings: "Settings", report: "Report", arguments: argparse.Namespace
+) -> "NDArray[np.bool_]":
+    """(height, width), those of the disagreeing pixels that the scene's decimals do not determine."""
+    import numpy as np
+
+    from converter.certify.certificate import undetermined
+    from converter.commands.progress import ProgressBar
+    from converter.compare.metrics import LIMIT, absolute_difference
+
+    pictures = report.pictures.reference_pixels, report.pictures.test_pixels
+    disagrees = np.asarray(~(absolute_difference(*pictures) <= LIMIT).all(axis=2), np.bool_)
+    with ProgressBar("certificate", arguments.quiet) as progress:
+        return undetermined(scene, settings, arguments.widen, disagrees, progress)
+
+
 def _explained(
-    scene: "Scene", chosen: list[Chosen], report: "Report", arguments: argparse.Namespace
+    scene: "Scene",
+    chosen: list[Chosen],
+    report: "Report",
+    arguments: argparse.Namespace,
+    undetermined: "NDArray[np.bool_] | None",
 ) -> "Explanation | None":
     """Why pixels disagree; None where a renderer does not tell its rays."""
     from converter.compare.classes import explain, less_exact
@@ -348,7 +382,7 @@ def _explained(
     settings = chosen[0].settings, chosen[1].settings
     renderers: list[Any] = [method.renderer for method in chosen]
     one, other = (partial(r.trace_pixels, scene, s) for r, s in zip(renderers, settings, strict=True))
-    return explain(scene, pictures, settings, (one, other), arithmetic, arguments.explain)
+    return explain(scene, pictures, settings, (one, other), arithmetic, arguments.explain, undetermined)
 
 
 def _print(report: "Report") -> None:

@@ -16,10 +16,11 @@ where a cosine is nearly 0, the square root of an error takes the place of its q
 import math
 from collections import Counter
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING, Literal, NamedTuple, get_args
 
 import numpy as np
+from numpy.typing import NDArray
 
 from converter.compare.margins import (
     Floats,
@@ -51,11 +52,13 @@ Class = Literal[
     "critical angle",
     "deep reflection",
     "ray not followed",
+    "not determined by the scene",
     "unexplained",
 ]
 CLASSES: tuple[Class, ...] = get_args(Class)
 """What a boundary is of. A silhouette is any place where a ray comes to meet another object or another face; a ray is
-not followed by a method that has another cut-off or depth, or where its weight is the cut-off itself."""
+not followed by a method that has another cut-off or depth, or where its weight is the cut-off itself. Whether a pixel
+is determined by the scene's decimals is told by whoever asks for the reasons."""
 
 MOST_TRACED = 256
 """Pixels that are traced at most; of more, as many evenly among them."""
@@ -147,6 +150,7 @@ def explain(
     traces: tuple[Trace, Trace],
     arithmetic: str,
     most: int = MOST_TRACED,
+    undetermined: NDArray[np.bool_] | None = None,
 ) -> Explanation:
     """Classify the pixels in which two pictures of a scene disagree.
 
@@ -157,6 +161,7 @@ def explain(
         traces: what traces their pixels.
         arithmetic: the less exact of the two, a key of `ARITHMETICS`.
         most: how many pixels to trace.
+        undetermined: (height, width), pixels of which is known that the scene does not determine them.
 
     """
     disagrees = ~(absolute_difference(*pictures) <= LIMIT).all(axis=2)
@@ -176,6 +181,8 @@ def explain(
             explainer.pixel(x, y, pair_trees(one.rays, other.rays))
             for (x, y), one, other in zip(batch, *trees, strict=True)
         )
+    if undetermined is not None:
+        found = [replace(p, kind="not determined by the scene") if undetermined[p.y, p.x] else p for p in found]
     return Explanation(len(rows), tuple(found))
 
 

@@ -52,6 +52,7 @@ class Report:
         flip: FLIP error of each pixel; None where its package is not installed.
         limit_percent: share of disagreeing pixels up to which they agree.
         explanation: why pixels disagree, where it was looked for.
+        undetermined: how many of the disagreeing pixels the scene's decimals do not determine, where that was asked.
 
     """
 
@@ -62,6 +63,7 @@ class Report:
     flip: NDArray[np.float32] | None
     limit_percent: float
     explanation: Explanation | None = None
+    undetermined: int | None = None
 
     @property
     def agrees(self) -> bool:
@@ -105,6 +107,8 @@ def difference_rows(report: Report) -> list[tuple[str, str]]:
     rows = [("pixels that disagree", _disagreeing(found))]
     if found.disagreeing and report.explanation is None:
         rows.append(("  off by less than a pixel", f"{report.shifted} of {found.disagreeing}"))
+    if report.undetermined is not None:
+        rows.append(("  not determined by the scene", f"{report.undetermined} of {found.disagreeing}"))
     if found.not_finite:
         rows.append(("pixels not finite", str(found.not_finite)))
     if report.clamped.disagreeing != found.disagreeing:
@@ -148,6 +152,7 @@ def to_json(report: Report) -> dict[str, Any]:
         "clamped": _difference_json(report.clamped),
         "shifted": report.shifted,
         "classes": _classes_json(report.explanation),
+        "undetermined": report.undetermined,
         "seconds": {
             name: {"cold": t.cold, "warm_median": t.warm_median, "warm": t.warm, "stages": dict(t.stages)}
             for name, t in report.pictures.timings.items()

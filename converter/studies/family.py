@@ -21,7 +21,8 @@ class Case:
         scene: the scene. All scenes of a family have the same structure and differ in numbers only, so that Mitsuba
             compiles one kernel for them.
         settings: of a small picture, large enough to see the failure.
-        truth: the picture by a closed form; None: what the native tracer draws in long double with the same settings.
+        truth: the picture by a closed form; None: what `certify` proves with the same settings, and where it does not,
+            or the scene is sampled, what the native tracer draws in long double.
         allowed: share of the pixels that may differ by more than 1/255 for reasons that no method can help, such as a
             step of the truth between what a pixel's coordinates round to.
 

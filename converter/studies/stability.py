@@ -14,18 +14,20 @@ from converter.scene.geometry import check_geometry
 from converter.scene.model import Scene
 from converter.scene.settings import Settings
 from converter.studies.family import Case, Family, Truth
-from converter.studies.worker import DrawingFailed, TookTooLong
+from converter.studies.worker import CERTIFICATE, DrawingFailed, TookTooLong
 
 LONGEST = 20.0
 """Seconds after which a picture is given up, and its method for the harder values of the family."""
 LONGEST_TRUTH = 120.0
 """The same of a truth that is drawn."""
+LONGEST_CERTIFICATE = 30.0
+"""The same of a truth that is proven."""
 FEW = 0.01
 """Share of the pixels up to which wrong ones are single ones, at edges: what a method's description tells of."""
 PLAIN = 0.2
 """Share of wrong pixels from which on anyone sees that something is wrong."""
 TRUTH = "native-long-double"
-"""The method that draws the truths for which there is no closed form."""
+"""The method that draws the truths for which there is no closed form, where nothing is proven of them."""
 
 Tell = Callable[[str, float], None]
 """Told what is being done, and the finished share of everything (0..1)."""
@@ -175,7 +177,14 @@ def study_family(
 def _truth(case: Case, worker: Draws) -> Truth:
     if case.truth is not None:
         return case.truth
-    return worker.render(TRUTH, None, case.scene, case.settings, LONGEST_TRUTH).astype(np.float64)
+    try:
+        proven = worker.render(CERTIFICATE, None, case.scene, case.settings, LONGEST_CERTIFICATE)
+    except DrawingFailed:  # it is sampled, for one
+        return worker.render(TRUTH, None, case.scene, case.settings, LONGEST_TRUTH).astype(np.float64)
+    if np.isfinite(proven).all():
+        return proven.astype(np.float64)
+    drawn = worker.render(TRUTH, None, case.scene, case.settings, LONGEST_TRUTH)
+    return np.where(np.isfinite(proven), proven, drawn).astype(np.float64)
 
 
 def _draw(case: Case, method: Method, worker: Draws, variant: str | None) -> Pixels:

@@ -39,8 +39,9 @@ def _page(studies: Sequence[FamilyStudy], shown: Sequence[Failure]) -> str:
     return f"""# Where each method fails
 
 Made by `make stability`: every method of the table draws every family's scenes, each of which pushes one number toward
-trouble and has a true picture: by a closed form, or by the native tracer in long double. A picture holds if no pixel
-differs from the truth by more than 1/255, but for the few that the family allows.
+trouble and has a true picture: by a closed form, by [certificates](certify.md), or, where those prove nothing and of
+scenes that are sampled, by the native tracer in long double. A picture holds if no pixel differs from the truth by more
+than 1/255, but for the few that the family allows.
 
 Where `whitted render` and `whitted inspect` see that a scene enters a region in which a method is known to fail, they
 say so, and name the method that holds; of POV-Ray nobody is warned. The study asks for these warnings, too:

@@ -16,6 +16,8 @@ from converter.scene.settings import Settings
 
 MEMORY = 8 << 30
 """Bytes of data that the process may have."""
+CERTIFICATE = "certificate"
+"""In the place of a method: the colours that are proven, NaN where none is."""
 STARTING = 60.0
 """Seconds that it may take to start and to load what a first picture needs, beside the picture's own."""
 
@@ -36,7 +38,7 @@ class Worker:
         self._pipe: Connection | None = None
 
     def render(self, method: str, variant: str | None, scene: Scene, settings: Settings, seconds: float) -> Pixels:
-        """The picture of `scene` by a method, by its name.
+        """The picture of `scene` by a method, by its name, or by `CERTIFICATE`.
 
         Raises:
             DrawingFailed: there is none, for a reason that the method gave, or since its process ended.
@@ -140,6 +142,10 @@ def _draw(
     from converter.renderers.methods import find_method
 
     try:
+        if name == CERTIFICATE:
+            from converter.certify.certificate import certify
+
+            return certify(scene, settings).colors.astype(np.float32)
         method = find_method(name)
         if (name, variant) not in renderers:
             renderers[name, variant] = method.renderer(variant)

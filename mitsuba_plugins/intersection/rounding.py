@@ -36,7 +36,12 @@ def least_spread(number: Any) -> float:
 
 def most_blur(number: Any) -> float:
     """Relative to distances and coordinates; beyond it the bounds, which grow faster than errors, make ties of none."""
-    return 2.0**-34 if decides_ties(number) else 0.0
+    return 2.0**-36 if decides_ties(number) else 0.0
+
+
+def most_of_radius(number: Any) -> float:
+    """Relative to a radius of curvature, of errors that say something of a surface."""
+    return 2.0**-32 if decides_ties(number) else 0.0
 
 
 def most_camera_blur(number: Any) -> float:

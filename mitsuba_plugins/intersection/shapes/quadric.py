@@ -29,7 +29,7 @@ import numpy as np
 from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.intersection.passages import Passage
 from mitsuba_plugins.intersection.rays import Ray, largest
-from mitsuba_plugins.intersection.rounding import epsilon, input_error, least_spread, most_blur
+from mitsuba_plugins.intersection.rounding import epsilon, input_error, least_spread, most_of_radius
 from mitsuba_plugins.intersection.shapes.kind import Contact, Row, Rows, Shape, SurfacePoint
 from native_tracer.incidence import surfaces_at
 
@@ -276,7 +276,7 @@ def _line(quadric: _Quadric, ray: Ray) -> _Line:
 def _most_touching(quadric: _Quadric, line: _Line, reach: Any) -> Any:
     """The discriminant of rays that are near to touching; the gradient is 0 at a cone's tip, and small near by."""
     near_tip = dr.square(least_spread(reach) * quadric.bend() * (reach + dr.abs(line.middle)))
-    return most_blur(reach) * dr.squared_norm(line.half_gradient) + near_tip
+    return most_of_radius(reach) * dr.squared_norm(line.half_gradient) + near_tip
 
 
 def passage(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
@@ -312,7 +312,7 @@ def passage_by_rules(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
     start_slope = 2 * dr.norm(start_gradient)
     start_off = quadric.error(line.start) + ray.t_min * start_slope
     starts = ~own & (dr.abs(quadric.value(line.start, start_gradient)) <= start_off)
-    starts &= start_off * quadric.bend() <= most_blur(off) * dr.square(start_slope)
+    starts &= start_off * quadric.bend() <= most_of_radius(off) * dr.square(start_slope)
     other = line.other_root()
     near = dr.select(starts, -dr.inf, near)
     far = dr.select(own, other, dr.select(starts, dr.select(far > ray.t_min, other, -dr.inf), far))

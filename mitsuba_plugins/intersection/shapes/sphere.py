@@ -9,7 +9,7 @@ import numpy as np
 from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.intersection.passages import Passage
 from mitsuba_plugins.intersection.rays import Ray, largest
-from mitsuba_plugins.intersection.rounding import epsilon, most_blur
+from mitsuba_plugins.intersection.rounding import epsilon, most_of_radius
 from mitsuba_plugins.intersection.shapes.kind import Contact, Row, Rows, Shape, SurfacePoint
 from native_tracer.incidence import surfaces_at
 
@@ -58,7 +58,7 @@ def passage(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
     """Both roots, from the centre; those that nearly touch are close to a tie."""
     row = rows.row()
     f, b, discriminant = _from_center(row, ray)
-    close = dr.abs(discriminant) <= most_blur(row.w) * dr.square(row.w)
+    close = dr.abs(discriminant) <= most_of_radius(row.w) * dr.square(row.w)
     near, far = _roots(row, f, b, discriminant)
     return Passage(near, far, rows.primitive(), rows.primitive(), close=close & ~own)
 
@@ -69,11 +69,11 @@ def passage_by_rules(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
     radius = row.w
     error = ray.t_min + surface_error(row)
     f, b, discriminant = _from_center(row, ray)
-    touching = radius * dr.minimum(2 * (error + dr.abs(b) * ray.spread), most_blur(radius) * radius)
+    touching = radius * dr.minimum(2 * (error + dr.abs(b) * ray.spread), most_of_radius(radius) * radius)
     near, far = _roots(row, f, b, dr.select(discriminant > touching, discriminant, dr.nan))
     # A ray that starts on the sphere by its origin's roundings, and not by knowledge, does not meet it there. That
     # crossing lies behind, and so do both where it leads away from the other.
-    starts = ~own & (dr.abs(dr.norm(f) - radius) <= error) & (error <= most_blur(radius) * radius)
+    starts = ~own & (dr.abs(dr.norm(f) - radius) <= error) & (error <= most_of_radius(radius) * radius)
     near = dr.select(starts, -dr.inf, near)
     far = dr.select(starts, dr.select(far > ray.t_min, -2 * dr.dot(f, ray.d), -dr.inf), far)
 

@@ -68,7 +68,7 @@ class Quadric {
         const L error = rays.t_min + error_of(rays.reach, gradient);
         // Of one that bends more than such errors tell, nothing is known.
         const Mask<Real> starts = (abs(equation.c) <= L(2) * gradient * error) &
-                                  (L(most_bend_) * error <= L(most_blur<Real>) * gradient) &
+                                  (L(most_bend_) * error <= L(most_of_radius<Real>) * gradient) &
                                   ~(rays.object == Indices<Real>(object_));
         const L through = equation.other_end();
         const Mask<Real> crosses = (through > rays.t_min) & (through < infinity) & (crossing.t < infinity);
@@ -305,7 +305,7 @@ class Quadric {
             return Mask<Real>::none();
         }
         const auto& [a, b, c, discriminant, half_gradient, bent_direction] = equation;
-        const Mask<Real> doubtful = discriminant <= L(most_blur<Real>) * (b * b + abs(a * c));
+        const Mask<Real> doubtful = discriminant <= L(most_of_radius<Real>) * (b * b + abs(a * c));
         if (!any(doubtful)) [[likely]] {
             return doubtful;
         }
@@ -316,7 +316,7 @@ class Quadric {
         const L gradient = sqrt(gradient2);
         const L off = rays.t_min + error_of(rays.reach + abs(middle), gradient);
         const L touching = L(2) * gradient * (abs(a) * off + abs(b) * rays.spread);
-        return doubtful & (discriminant <= min(touching, L(most_blur<Real>) * gradient2));
+        return doubtful & (discriminant <= min(touching, L(most_of_radius<Real>) * gradient2));
     }
 
     Vector<Real> center_, bend_, linear_;

@@ -37,7 +37,7 @@ class Sphere {
           reach2_(radius_ * radius_ * (1 + 32 * std::numeric_limits<Real>::epsilon())),
           diameter_(2 * radius_),
           touching_(diameter_ * error_),
-          most_touching_(most_blur<Real> * radius_ * radius_),
+          most_touching_(most_of_radius<Real> * radius_ * radius_),
           object_(object),
           primitive_(first_primitive) {}
 
@@ -93,7 +93,8 @@ class Sphere {
         const Vector<L> g = Vector<L>(center_) - rays.origin;
         // Of a sphere smaller than such errors nothing is known.
         const L error = rays.t_min + L(error_);
-        const Mask<Real> starts = (abs(length(g) - L(radius_)) <= error) & (error <= L(most_blur<Real>) * L(radius_)) &
+        const Mask<Real> starts = (abs(length(g) - L(radius_)) <= error) &
+                                  (error <= L(most_of_radius<Real>) * L(radius_)) &
                                   ~(rays.object == Indices<Real>(object_));
         const L through = L(2) * dot(g, rays.direction);
         const Mask<Real> crosses = (through > rays.t_min) & (crossing.t < infinity);

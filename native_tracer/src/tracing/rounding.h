@@ -44,7 +44,12 @@ inline constexpr Real least_spread = 4 * tie_epsilon<Real>;
 // Relative to distances and coordinates. The bounds of a ray grow by more than its errors do, up to twentyfold a bounce
 // where those only double: beyond this they would make ties of what is none.
 template <typename Real>
-inline constexpr Real most_blur = tie_epsilon<Real> > 0 ? Real(0x1p-34) : Real(0);
+inline constexpr Real most_blur = tie_epsilon<Real> > 0 ? Real(0x1p-36) : Real(0);
+
+// Relative to a radius of curvature, of errors that say something of a surface: much of them may be the file's
+// numbers'.
+template <typename Real>
+inline constexpr Real most_of_radius = tie_epsilon<Real> > 0 ? Real(0x1p-32) : Real(0);
 
 // Of directions from an eye far from the origin, whose bounds have not grown: the square root of epsilon.
 template <typename Real>
