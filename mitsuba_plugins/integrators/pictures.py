@@ -16,6 +16,7 @@ from mitsuba_plugins import sampler as samples
 from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.integrators.pace import Pace
 from mitsuba_plugins.intersection.columns import column
+from mitsuba_plugins.syntax import syntax
 from native_tracer.passes import passes
 
 Progress = Callable[[float], None]
@@ -256,7 +257,7 @@ def _launched(
     return color, too_deep
 
 
-@dr.syntax
+@syntax
 def _add_samples(
     integrator: Any, sensor: Any, color: Any, too_deep: Any, pixel: Any, tables: Any, sample: Any, end: Any
 ) -> tuple[Any, Any, Any]:

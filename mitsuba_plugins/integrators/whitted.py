@@ -46,6 +46,7 @@ from mitsuba_plugins.intersection.rounding import (
     most_blur,
     most_camera_blur,
 )
+from mitsuba_plugins.syntax import syntax
 
 INTERSECTIONS = ("analytic", "bvh", "mesh", "offset", "ulp")
 """Ways to find what a ray hits."""
@@ -318,7 +319,7 @@ class Whitted(mi.SamplingIntegrator):
             d, spread = self._in_cone(d, spread, hit, inside, finish, sample, path, samples.REFRACTED_CONE, active)
         return self._tracer.spawn(hit, d, inside, spread), total
 
-    @dr.syntax
+    @syntax
     def _in_cone(self, d, spread, hit: Hit, inside, finish: Finish, sample, path, use, active):
         """A direction that is uniform in the cone about `d`, where the finish has one, and how far it may be off.
 
@@ -335,7 +336,7 @@ class Whitted(mi.SamplingIntegrator):
 
     # ------------------------------------------------------------------ the ray tree
 
-    @dr.syntax
+    @syntax
     def trace(self, ray: Ray, sample, active):
         """Radiance (Color3) along rays: the whole tree below each, in one kernel; if `depth_limited`, whether the limit
         dropped a ray that the cut-off would have kept, else False; if `signing`, the signature (UInt32), else 0; and,
@@ -443,7 +444,7 @@ class Whitted(mi.SamplingIntegrator):
             return self.types.Float(0), mi.Bool(False)
         return weight, active & (weight > 0) & (weight >= self.cutoff)
 
-    @dr.syntax
+    @syntax
     def local_radiance(self, ray: Ray, hit: Hit, finish: Finish, color, sample, path):
         """What a surface sends back along a ray by itself (Color3): ambient light, and what the lights add; if
         `signing`, a word (UInt32) for the shadows that it lies in, else 0; and whether one of these is undecided.

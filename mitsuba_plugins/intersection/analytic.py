@@ -20,6 +20,7 @@ from mitsuba_plugins.intersection.rays import NOTHING, Ray, Real, largest
 from mitsuba_plugins.intersection.rounding import most_blur
 from mitsuba_plugins.intersection.rows import ListedRows
 from mitsuba_plugins.intersection.surfaces import ExactSurfaces
+from mitsuba_plugins.syntax import syntax
 
 
 class AnalyticSurfaces(ExactSurfaces):
@@ -62,7 +63,7 @@ class AnalyticSurfaces(ExactSurfaces):
         close |= (t_second - t_best <= near) | (t_best < near)
         return t_best, object_best, primitive_best, close
 
-    @dr.syntax
+    @syntax
     def find_blocker(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any]:
         """As `ExactSurfaces` has it."""
         found = dr.full(mi.UInt32, NOTHING, dr.width(ray.d))

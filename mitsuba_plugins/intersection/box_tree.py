@@ -17,6 +17,7 @@ from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.intersection.columns import column
 from mitsuba_plugins.intersection.geometry import Box
 from mitsuba_plugins.intersection.rays import NOTHING, Ray, Real, largest
+from mitsuba_plugins.syntax import syntax
 from native_tracer.bvh import threaded_bvh
 
 SLACK = 2.0**-20
@@ -65,7 +66,7 @@ class BoxTree:
         """A distance as `next` takes it, and a little more."""
         return mi.Float(distance * self._scale) * (1 + SLACK)
 
-    @dr.syntax
+    @syntax
     def next(self, walk: Walk, node: Any, limit: Any, skipped: Any, active: Any) -> tuple[Any, Any]:
         """The next object, from `node` on, whose box rays enter before `limit`, or NOTHING, and the node to go on at.
 

@@ -12,6 +12,7 @@ from mitsuba_plugins.intersection.primitives import Primitives
 from mitsuba_plugins.intersection.rays import NOTHING, Ray, Real, largest
 from mitsuba_plugins.intersection.rounding import most_blur
 from mitsuba_plugins.intersection.surfaces import ExactSurfaces
+from mitsuba_plugins.syntax import syntax
 
 
 class BvhSurfaces(ExactSurfaces):
@@ -31,7 +32,7 @@ class BvhSurfaces(ExactSurfaces):
         _, found, _, close = self._search(ray, distance, light, active)
         return found, close
 
-    @dr.syntax
+    @syntax
     def _search(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any, Any, Any]:
         """What is met first before `distance`; with a light there, anything that is in its way."""
         width = dr.width(ray.d)

@@ -18,6 +18,7 @@ from mitsuba_plugins.intersection.geometry import Surface
 from mitsuba_plugins.intersection.passages import Crossing
 from mitsuba_plugins.intersection.rays import INVERTED, UPRIGHT, Ray, Real
 from mitsuba_plugins.intersection.shapes.kind import ShapeKind, Vector
+from mitsuba_plugins.syntax import syntax
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
@@ -116,7 +117,7 @@ class LightContacts:
         self._primitive = column(mi.UInt32, [contact.primitive for contact in found])
         self._rows = column(types.Float, [x for c in found for x in (*c.normal, c.curvature)] or [0.0] * 4)
 
-    @dr.syntax
+    @syntax
     def lies_at(self, light: Any, crossing: Crossing, d: Any, active: Any) -> Any:
         """Whether rays of direction `d` that lead to a light cross there what the light lies on.
 
@@ -138,7 +139,7 @@ class LightContacts:
                 i += 1
         return result
 
-    @dr.syntax
+    @syntax
     def grazes(self, light: Any, primitive: Any, active: Any) -> Any:
         """Whether a primitive is a plane that a light lies in, and so shines along."""
         result = mi.Bool(False)

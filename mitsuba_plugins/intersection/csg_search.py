@@ -16,6 +16,7 @@ from mitsuba_plugins.intersection.passages import Crossing
 from mitsuba_plugins.intersection.rays import NOTHING, UPRIGHT, Ray
 from mitsuba_plugins.intersection.rounding import most_blur
 from mitsuba_plugins.intersection.shapes.kind import ShapeKind
+from mitsuba_plugins.syntax import syntax
 
 BOUND_ROOM = 2.0**-20
 """By how much, relatively, a sphere around a leaf is larger."""
@@ -137,7 +138,7 @@ class _Search:
         return self.csg.value([(bits & (1 << k)) != 0 for k in range(self.count)])
 
 
-@dr.syntax
+@syntax
 def _start(search: _Search) -> _Start:
     """By all leaves, one after the other."""
     width = search.width
@@ -164,7 +165,7 @@ def _start(search: _Search) -> _Start:
     return _Start(near, met, passed, inside_sheet, inside, close, between)
 
 
-@dr.syntax
+@syntax
 def _first_change(search: _Search, start: _Start) -> Crossing:
     """From one crossing to the next, until the value changes."""
     ray, width, kind = search.ray, search.width, type(search.reach)
@@ -225,7 +226,7 @@ def _first_change(search: _Search, start: _Start) -> Crossing:
     return Crossing(t, enters, primitive, error, (start.close | tied) & (not search.by_rules))
 
 
-@dr.syntax
+@syntax
 def _nearest_to_start(search: _Search, start: _Start, lost: Any) -> Any:
     """The primitive, but those that a ray starts on, whose crossing is nearest to where it starts, where it is lost."""
     nearest = dr.full(type(search.reach), dr.inf, search.width)

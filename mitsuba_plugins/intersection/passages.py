@@ -9,6 +9,7 @@ import mitsuba as mi
 
 from mitsuba_plugins.intersection.rays import Ray
 from mitsuba_plugins.intersection.rounding import most_blur
+from mitsuba_plugins.syntax import syntax
 
 
 @dataclass
@@ -63,7 +64,7 @@ def first_crossing(passage: Passage, ray: Ray, own: Any, reach: Any, which_piece
     )
 
 
-@dr.syntax
+@syntax
 def crossing_if(active: Any, ray: Ray, width: int, intersect: Callable[[], Crossing]) -> Crossing:
     """What `intersect()` gives, in a branch: where packets of rays may all be spared it."""
     t = dr.full(type(ray.t_min), dr.inf, width)

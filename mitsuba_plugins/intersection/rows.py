@@ -6,6 +6,8 @@ from typing import Any
 import drjit as dr
 import mitsuba as mi
 
+from mitsuba_plugins.syntax import syntax
+
 
 class GatheredRows:
     """The rows of primitives from `first` on, `count` of them, that differ from ray to ray; see `Rows`."""
@@ -31,7 +33,7 @@ class GatheredRows:
             return self._first_row
         return self._gather(self._first + k, self._active)
 
-    @dr.syntax
+    @syntax
     def fold(self, step: Callable[[Any, Any, Any], Any], state: Any) -> Any:
         """A loop."""
         primitive = mi.UInt32(self._first) + dr.zeros(mi.UInt32, self.width)

@@ -11,6 +11,7 @@ from mitsuba_plugins.intersection.passages import Crossing
 from mitsuba_plugins.intersection.primitives import Primitives
 from mitsuba_plugins.intersection.rays import NOTHING, Ray, largest
 from mitsuba_plugins.intersection.rounding import most_blur
+from mitsuba_plugins.syntax import syntax
 
 
 class Candidates(Protocol):
@@ -58,7 +59,7 @@ class Ties:
         self._contacts = contacts
         self._candidates = candidates
 
-    @dr.syntax
+    @syntax
     def closest(self, ray: Ray, t: Any, index: Any, primitive: Any, close: Any) -> tuple[Any, Any, Any]:
         """Distance, object and primitive of the first hit: where rays are not close to a tie as they were found."""
         if close:
@@ -93,7 +94,7 @@ class Ties:
                 primitive = dr.select(first, met.primitive, primitive)
         return t, index, primitive
 
-    @dr.syntax
+    @syntax
     def blocker(self, ray: Ray, distance: Any, light: Any, found: Any, close: Any) -> Any:
         """Some object before a light at `distance`, or NOTHING; where rays are not close to a tie what was found."""
         if close:
