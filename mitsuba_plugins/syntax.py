@@ -1,4 +1,9 @@
-"""Loops and branches over Dr.Jit's arrays, written as Python's own `while` and `if`."""
+"""Loops and branches over Dr.Jit's arrays, written as Python's own `while` and `if`.
+
+Of all variables that a loop mentions Dr.Jit makes its state; those that turn out to stay the same it takes away again,
+and records the loop once more, four times where it lies within another. So what a loop only reads stands in its
+`dr.hint(..., exclude=[...])`, and what is not needed is None, and no number that never changes.
+"""
 
 from collections.abc import Callable
 from functools import cache, wraps

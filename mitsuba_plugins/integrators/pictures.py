@@ -264,8 +264,8 @@ def _add_samples(
     """What `trace` finds for pixels, by their numbers (UInt32), with some more samples added, and which of them are
     undecided.
     """
-    undecided = dr.zeros(mi.Bool, dr.width(color))
     width = dr.width(color)
+    undecided = dr.zeros(mi.Bool, width) if integrator.postpones_ties else False
     corner = _corners(sensor.film(), pixel)
     key = integrator.pixel_key(corner)
     offsets, numbers = tables
@@ -280,7 +280,7 @@ def _add_samples(
     else:
         # Opaque, so that all numbers of samples share one kernel.
         sample, end = dr.opaque(mi.UInt32, sample, width), dr.opaque(mi.UInt32, end)
-        while sample < end:
+        while dr.hint(sample < end, exclude=[integrator, sensor, corner, key, offsets, numbers, end]):
             position = corner + dr.gather(mi.Point2d, offsets, sample)
             number = integrator.name_sample(
                 key, dr.gather(mi.UInt32, numbers, sample) if integrator.sampled else mi.UInt32(0)

@@ -68,7 +68,7 @@ class AnalyticSurfaces(ExactSurfaces):
         """As `ExactSurfaces` has it."""
         found = dr.full(mi.UInt32, NOTHING, dr.width(ray.d))
         close = dr.full(mi.Bool, False, dr.width(ray.d))
-        if active:
+        if dr.hint(active, exclude=[self, ray, distance, light, active]):
             reach = largest(ray.o)
             for index in range(len(self._solids)):
                 crossing = self._intersect(index, ray, reach, which_piece=False)

@@ -75,7 +75,7 @@ class BoxTree:
         """
         index = dr.full(mi.UInt32, NOTHING, dr.width(walk.slope))
         walking = active & (node < walk.end)
-        while walking:
+        while dr.hint(walking, exclude=[self, walk, limit, skipped]):
             corners = dr.gather(mi.Array4f, self._nodes, 2 * node, walking)
             rest = dr.gather(mi.Array4f, self._nodes, 2 * node + 1, walking)
             near = dr.max(dr.fma(mi.Vector3f(corners.xyz), walk.slope, walk.enter))

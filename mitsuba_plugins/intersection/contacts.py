@@ -132,7 +132,7 @@ class LightContacts:
             if dr.hint(self._any_csg, mode="scalar"):
                 enters ^= primitive >= INVERTED
                 primitive &= UPRIGHT
-            while active & (i < end):
+            while dr.hint(active & (i < end), exclude=[self, d, active, primitive, enters, end]):
                 row = dr.gather(self._types.Vector4, self._rows, i, active)
                 there = (row.w == 0) | (enters == (dr.dot(self._types.Vector3(row.xyz), d) < 0))
                 result |= there & (primitive == dr.gather(mi.UInt32, self._primitive, i, active))
@@ -147,7 +147,7 @@ class LightContacts:
             result = dr.full(mi.Bool, False, dr.width(primitive, active))
             primitive = primitive & UPRIGHT if self._any_csg else primitive
             i, end = self._range(light, active)
-            while active & (i < end):
+            while dr.hint(active & (i < end), exclude=[self, primitive, active, end]):
                 curvature = dr.gather(self._types.Float, self._rows, 4 * i + 3, active)
                 result |= (curvature == 0) & (primitive == dr.gather(mi.UInt32, self._primitive, i, active))
                 i += 1

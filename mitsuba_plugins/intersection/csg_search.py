@@ -149,7 +149,7 @@ def _start(search: _Search) -> _Start:
     nowhere = dr.full(mi.Bool, False, width)
     k = dr.zeros(mi.UInt32, width)
     bit = dr.full(mi.UInt64, 1, width)
-    while k < search.count:
+    while dr.hint(k < search.count, exclude=[search, nowhere]):
         comes_near = search.comes_near(k)
         leaf = search.meet(k, nowhere, comes_near)
         near |= dr.select(comes_near, bit, 0)
@@ -176,11 +176,11 @@ def _first_change(search: _Search, start: _Start) -> Crossing:
     started = dr.full(mi.Bool, False, width)
     met, passed = mi.UInt64(start.met), mi.UInt64(start.passed)
     walking = met != 0
-    while walking:
+    while dr.hint(walking, exclude=[search, start]):
         # What is known to lie ahead of a ray's start may be no farther than t_min.
         next_t, next_error = dr.full(kind, dr.inf, width), dr.zeros(kind, width)
         left = mi.UInt64(met)
-        while walking & (left != 0):
+        while dr.hint(walking & (left != 0), exclude=[search, start, walking, behind, started]):
             ahead = search.meet(mi.UInt32(dr.tzcnt(left)), start.inside_sheet, walking & (left != 0)).ahead
             for distance, its_error, _, _, known in ahead.crossings():
                 closer = ((distance > behind) | (known & ~started)) & (distance < next_t)
@@ -194,7 +194,7 @@ def _first_change(search: _Search, start: _Start) -> Crossing:
         near = most_blur(next_t) * (search.reach + next_t)
         walking &= next_t < dr.inf
         left = mi.UInt64(met)
-        while walking & (left != 0):
+        while dr.hint(walking & (left != 0), exclude=[search, start, walking, next_t, next_error, near]):
             ahead = search.meet(mi.UInt32(dr.tzcnt(left)), start.inside_sheet, walking & (left != 0)).ahead
             others = left & (left - 1)
             bit = left ^ others
@@ -232,7 +232,7 @@ def _nearest_to_start(search: _Search, start: _Start, lost: Any) -> Any:
     nearest = dr.full(type(search.reach), dr.inf, search.width)
     found = dr.zeros(mi.UInt32, search.width)
     left = mi.UInt64(start.near)
-    while lost & (left != 0):
+    while dr.hint(lost & (left != 0), exclude=[search, start, lost]):
         ahead = search.meet(mi.UInt32(dr.tzcnt(left)), start.inside_sheet, lost & (left != 0)).ahead
         for t, _, primitive, enters, _ in ahead.crossings():
             closer = dr.abs(t) < nearest

@@ -100,7 +100,7 @@ def _step(search: _Leaves, width: int) -> Crossing:
     t = search.next(search.start())
     after = dr.full(mi.Bool, False, width)
     walking = t < dr.inf
-    while walking:
+    while dr.hint(walking, exclude=[search]):
         before, after = search.values(t)
         walking &= before == after
         t = dr.select(walking, search.next(t), t)

@@ -62,7 +62,7 @@ class MeshSurfaces(ExactSurfaces):
         primitive = dr.zeros(mi.UInt32, width)
         searching = mi.Bool(active)
         steps = dr.zeros(mi.UInt32, width)
-        while searching:
+        while dr.hint(searching, exclude=[self, ray, distance, light, reach]):
             probe = mi.Ray3f(mi.Point3f(start), mi.Vector3f(ray.d))
             pi = self._scene.ray_intersect_preliminary(probe, coherent=False, active=searching)
             met = searching & pi.is_valid()

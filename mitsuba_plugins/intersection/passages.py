@@ -72,7 +72,7 @@ def crossing_if(active: Any, ray: Ray, width: int, intersect: Callable[[], Cross
     primitive = dr.zeros(mi.UInt32, width)
     error = dr.zeros(type(ray.t_min), width)
     close = dr.full(mi.Bool, False, width)
-    if active:
+    if dr.hint(active, exclude=[intersect]):
         crossing = intersect()
         t, enters, primitive, close = crossing.t, crossing.enters, crossing.primitive, crossing.close
         error += crossing.error

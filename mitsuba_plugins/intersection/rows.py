@@ -38,7 +38,7 @@ class GatheredRows:
         """A loop."""
         primitive = mi.UInt32(self._first) + dr.zeros(mi.UInt32, self.width)
         end = self._first + self._count
-        while self._active & (primitive < end):
+        while dr.hint(self._active & (primitive < end), exclude=[self, step, end]):
             state = step(state, primitive, self._gather(primitive, self._active))
             primitive += 1
         return state

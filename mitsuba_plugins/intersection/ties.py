@@ -62,7 +62,7 @@ class Ties:
     @syntax
     def closest(self, ray: Ray, t: Any, index: Any, primitive: Any, close: Any) -> tuple[Any, Any, Any]:
         """Distance, object and primitive of the first hit: where rays are not close to a tie as they were found."""
-        if close:
+        if dr.hint(close, exclude=[self, ray, close]):
             width = dr.width(close)
             nobody = dr.full(mi.UInt32, NOTHING, width)
             walk = self._candidates.walk(ray)
@@ -72,7 +72,7 @@ class Ties:
             error = dr.zeros(type(t), width)
             node = mi.UInt32(walk.start)
             searching = mi.Bool(close)
-            while searching:
+            while dr.hint(searching, exclude=[self, ray, walk, nobody]):
                 tested, node = self._candidates.next(walk, node, self._limit(ray, nearest), nobody, searching)
                 searching &= tested != NOTHING
                 met = self._intersect(ray, tested, searching)
@@ -84,7 +84,7 @@ class Ties:
             primitive = dr.zeros(mi.UInt32, width)
             node = mi.UInt32(walk.start)
             searching = close & (nearest < dr.inf)
-            while searching:
+            while dr.hint(searching, exclude=[self, ray, walk, nobody, nearest, error]):
                 tested, node = self._candidates.next(walk, node, self._limit(ray, nearest), nobody, searching)
                 searching &= tested != NOTHING
                 met = self._intersect(ray, tested, searching)
@@ -97,14 +97,14 @@ class Ties:
     @syntax
     def blocker(self, ray: Ray, distance: Any, light: Any, found: Any, close: Any) -> Any:
         """Some object before a light at `distance`, or NOTHING; where rays are not close to a tie what was found."""
-        if close:
+        if dr.hint(close, exclude=[self, ray, distance, light, close]):
             width = dr.width(close)
             nobody = dr.full(mi.UInt32, NOTHING, width)
             found = dr.full(mi.UInt32, NOTHING, width)
             walk = self._candidates.walk(ray)
             node = mi.UInt32(walk.start)
             searching = mi.Bool(close)
-            while searching:
+            while dr.hint(searching, exclude=[self, ray, distance, light, walk, nobody]):
                 tested, node = self._candidates.next(walk, node, self._limit(ray, distance), nobody, searching)
                 searching &= tested != NOTHING
                 met = self._intersect(ray, tested, searching)
