@@ -5,7 +5,6 @@ box is missed. There is one such order for every octant of directions, in which 
 Smits, Efficiency Issues for Ray Tracing, Journal of Graphics Tools 3(2), 1998.
 """
 
-import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,6 +13,7 @@ import mitsuba as mi
 import numpy as np
 
 from mitsuba_plugins.arithmetic import quotient
+from mitsuba_plugins.intersection.coarse import unit_scale
 from mitsuba_plugins.intersection.columns import column
 from mitsuba_plugins.intersection.geometry import Box
 from mitsuba_plugins.intersection.rays import NOTHING, Ray, Real, largest
@@ -26,9 +26,6 @@ MARGIN = 2.0**-20
 """By how much, relative to the tree and the ray's origin, boxes are wider: some roundings, and what ties with a hit."""
 LEAST_SLOPE = 2.0**-60
 """Of a direction: with less, along an axis, products might overflow, and the ray moves by much less than `MARGIN`."""
-
-_LARGEST_EXPONENT = 1023
-"""Of a power of two that is a double."""
 
 
 @dataclass
@@ -48,7 +45,7 @@ class BoxTree:
     def __init__(self, types: Real, boxes: list[Box | None]) -> None:
         """Take the boxes of all objects; None of those that have no bounds."""
         self._types = types
-        scale = _scale(boxes)
+        scale = unit_scale(abs(x) for box in boxes if box is not None for corner in box for x in corner)
         self._scale = types.Float(scale)
         self._nodes, self._node_count = _nodes(boxes, scale)
         dr.make_opaque(self._node_count, self._scale)
@@ -93,12 +90,6 @@ class BoxTree:
 def _octant(d: Any) -> Any:
     """Which components of a direction are negative, a bit each."""
     return sum(dr.select(component < 0, mi.UInt32(1 << axis), 0) for axis, component in enumerate(d))
-
-
-def _scale(boxes: list[Box | None]) -> float:
-    """A power of two that makes the boxes so large that single precision holds them, and distances to them."""
-    largest = max((abs(x) for box in boxes if box is not None for corner in box for x in corner), default=0.0)
-    return math.ldexp(1.0, min(-math.frexp(largest)[1], _LARGEST_EXPONENT)) if largest > 0 else 1.0
 
 
 def _nodes(boxes: list[Box | None], scale: float) -> tuple[Any, Any]:

@@ -4,6 +4,7 @@ The distance between such a point and such a surface is 0, but computed along a 
 sign, another one for every ray. So it is settled once, before rays are traced, what lies on what, by the native tracer.
 """
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -17,13 +18,16 @@ from mitsuba_plugins.intersection.csg import Csg
 from mitsuba_plugins.intersection.geometry import Surface
 from mitsuba_plugins.intersection.passages import Crossing
 from mitsuba_plugins.intersection.rays import INVERTED, UPRIGHT, Ray, Real
-from mitsuba_plugins.intersection.shapes.kind import ShapeKind, Vector
+from mitsuba_plugins.intersection.shapes.kind import Row, ShapeKind, Vector
 from mitsuba_plugins.syntax import syntax
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 Numbers = NDArray[np.float64]
+
+INNER_ROOM = 2.0**-16
+"""Relative to its radius, how far away from a ball's surface lights are of which that is known without tests."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -113,9 +117,16 @@ class LightContacts:
         self.objects = {contact.object for contact in found}
         """The objects that some light lies on."""
         self._any_csg = contacts.any_csg
+        self._lights = [(tuple(at), radius) for at, radius in zip(positions.tolist(), radii.tolist(), strict=True)]
         self._end = column(mi.UInt32, np.cumsum([len(of_one) for of_one in by_light], dtype=np.uint32))
         self._primitive = column(mi.UInt32, [contact.primitive for contact in found])
         self._rows = column(types.Float, [x for c in found for x in (*c.normal, c.curvature)] or [0.0] * 4)
+
+    def all_within(self, ball: Row) -> bool:
+        """Whether all lights lie inside of a ball, away from its surface."""
+        *center, radius = ball
+        inner = radius * (1 - INNER_ROOM)
+        return all(math.dist(center, at) + size < inner for at, size in self._lights)
 
     @syntax
     def lies_at(self, light: Any, crossing: Crossing, d: Any, active: Any) -> Any:

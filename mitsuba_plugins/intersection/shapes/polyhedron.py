@@ -18,7 +18,6 @@ from native_tracer.incidence import surfaces_at, within
 ROWS = 1
 FACETED = True
 CONVEX = True
-BOUNDED_FIRST = True
 
 
 def read(entry: dict[str, Any]) -> Shape:
