@@ -1,5 +1,6 @@
 """The tree of boxes by which Mitsuba's kernels search many surfaces: which of them rays may meet."""
 
+from fractions import Fraction
 from itertools import product
 
 import numpy as np
@@ -23,18 +24,20 @@ def tree():
 
 
 def candidates(tree, origins, directions, distance=np.inf, skipped=0xFFFFFFFF):
-    """For each ray the objects that it may meet, in the order in which they are found."""
+    """For each ray of unit direction the objects that it may meet before a distance, in the order in which they are
+    found.
+    """
     import drjit as dr
     import mitsuba as mi
 
-    from mitsuba_plugins.intersection.rays import NOTHING, lanes, real, start_ray, unit
+    from mitsuba_plugins.intersection.rays import NOTHING, lanes, real, start_ray
 
-    o, d = (np.asarray(v, float).T for v in (origins, directions))
-    ray = start_ray(real("double"), mi.Point3d(o), unit(mi.Vector3d(d)))
+    o, d = (np.ascontiguousarray(np.asarray(v, float).T) for v in (origins, directions))
+    ray = start_ray(real("double"), mi.Point3d(o), mi.Vector3d(d))
     width = dr.width(ray.d)
     walk = tree.walk(ray)
     node, searching = mi.UInt32(walk.start), lanes(width)
-    limit = tree.limit(dr.full(mi.Float64, distance, width))
+    limit = tree.limit(mi.Float64(np.broadcast_to(distance, width)))
     found = [[] for _ in range(width)]
     while dr.any(searching):
         index, node = tree.next(walk, node, limit, dr.full(mi.UInt32, skipped, width), searching)
@@ -81,3 +84,54 @@ def test_what_ties_is_sought_in_boxes_that_are_missed_by_a_little(tree, off):
         assert len(found) == 11
     beside = candidates(tree, [(1.001, 0.5, -1)], [(0, 0, 1)])
     assert beside == [[0]]
+
+
+# ---- In single precision, and exactly
+
+
+def entered(low, high, o, d):
+    """Where a ray enters a box, 0 if it starts inside, in exact arithmetic; None if it misses it."""
+    first, last = Fraction(0), None
+    for a, b, start, slope in zip(low, high, o, d, strict=True):
+        if slope == 0:
+            if not a <= start <= b:
+                return None
+            continue
+        near, beyond = sorted((Fraction(a) - Fraction(start)) / Fraction(slope) for a in (a, b))
+        first, last = max(first, near), beyond if last is None else min(last, beyond)
+    return first if first <= last else None
+
+
+def grazing_rays(rng, boxes, away):
+    """To points of the boxes' corners, edges and faces; some along axes, or almost."""
+    for low, high in boxes:
+        for fixed in product((True, False), repeat=3):
+            share = np.where(fixed, rng.integers(0, 2, 3), rng.uniform(size=3))
+            target = np.array(low) * (1 - share) + np.array(high) * share
+            d = rng.normal(size=3)
+            d[rng.integers(0, 3)] *= rng.choice([0, 1e-300, 1e-20, 1e-9, 1, 1])
+            d /= np.linalg.norm(d)
+            yield target - rng.uniform(0.5, 2) * away * d, d
+
+
+@pytest.mark.parametrize(("scale", "away"), [(1, 1), (1, 1e3), (1, 1e9), (1e-300, 1), (1e290, 1e3)])
+def test_roundings_make_no_ray_miss_a_box(mi, scale, away):
+    """Boxes whose sides single precision does not have; also before a limit that is where a ray enters one."""
+    from mitsuba_plugins.intersection.box_tree import BoxTree
+    from mitsuba_plugins.intersection.rays import real
+
+    rng = np.random.default_rng(7)
+    boxes = [[tuple(corner) for corner in np.sort(rng.uniform(-1, 1, (2, 3)) * scale, axis=0)] for _ in range(16)]
+    o, d = map(np.array, zip(*grazing_rays(rng, boxes, away * scale), strict=True))
+    met = [[entered(*box, *ray) for box in boxes] for ray in zip(o, d, strict=True)]
+    first = [min(((t, k) for k, t in enumerate(row) if t is not None), default=None) for row in met]
+    tree = BoxTree(real("double"), boxes)
+    crossed = [{k for k, t in enumerate(row) if t is not None} for row in met]
+    assert sum(map(len, crossed)) > len(o)
+    every = [set(found) for found in candidates(tree, o, d)]
+    assert all(row <= found for row, found in zip(crossed, every, strict=True))
+    if away < 1e9:
+        assert sum(map(len, every)) < 1.1 * sum(map(len, crossed))
+    limit = np.array([0.0 if near is None else np.nextafter(float(near[0]), np.inf) for near in first])
+    for found, near in zip(candidates(tree, o, d, limit), first, strict=True):
+        assert near is None or near[1] in found

@@ -25,7 +25,10 @@ COMMANDS = {
 def main(argv: Sequence[str] | None = None) -> int:
     """Run `whitted` with these arguments, the process's own by default; return its exit status."""
     from converter.commands.exits import run
+    from converter.commands.garbage import collect_seldom
 
+    if argv is None:
+        collect_seldom()
     words = list(sys.argv[1:] if argv is None else argv)
     name = words[0] if words else ""
     return run(f"whitted {name}" if name in COMMANDS else "whitted", lambda: _dispatch(words))

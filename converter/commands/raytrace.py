@@ -14,7 +14,10 @@ if TYPE_CHECKING:
 def main(argv: Sequence[str] | None = None) -> int:
     """Run `raytrace` with these arguments, the process's own by default; return its exit status."""
     from converter.commands.exits import run
+    from converter.commands.garbage import collect_seldom
 
+    if argv is None:
+        collect_seldom()
     words = list(sys.argv[1:] if argv is None else argv)
     return run("raytrace", lambda: _dispatch(words))
 

@@ -16,6 +16,7 @@ from mitsuba_plugins import sampler as samples
 from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.integrators.pace import Pace
 from mitsuba_plugins.intersection.columns import column
+from mitsuba_plugins.syntax import syntax
 from native_tracer.passes import passes
 
 Progress = Callable[[float], None]
@@ -256,15 +257,15 @@ def _launched(
     return color, too_deep
 
 
-@dr.syntax
+@syntax
 def _add_samples(
     integrator: Any, sensor: Any, color: Any, too_deep: Any, pixel: Any, tables: Any, sample: Any, end: Any
 ) -> tuple[Any, Any, Any]:
     """What `trace` finds for pixels, by their numbers (UInt32), with some more samples added, and which of them are
     undecided.
     """
-    undecided = dr.zeros(mi.Bool, dr.width(color))
     width = dr.width(color)
+    undecided = dr.zeros(mi.Bool, width) if integrator.postpones_ties else False
     corner = _corners(sensor.film(), pixel)
     key = integrator.pixel_key(corner)
     offsets, numbers = tables
@@ -279,7 +280,7 @@ def _add_samples(
     else:
         # Opaque, so that all numbers of samples share one kernel.
         sample, end = dr.opaque(mi.UInt32, sample, width), dr.opaque(mi.UInt32, end)
-        while sample < end:
+        while dr.hint(sample < end, exclude=[integrator, sensor, corner, key, offsets, numbers, end]):
             position = corner + dr.gather(mi.Point2d, offsets, sample)
             number = integrator.name_sample(
                 key, dr.gather(mi.UInt32, numbers, sample) if integrator.sampled else mi.UInt32(0)

@@ -46,6 +46,7 @@ from mitsuba_plugins.intersection.rounding import (
     most_blur,
     most_camera_blur,
 )
+from mitsuba_plugins.syntax import syntax
 
 INTERSECTIONS = ("analytic", "bvh", "mesh", "offset", "ulp")
 """Ways to find what a ray hits."""
@@ -318,7 +319,7 @@ class Whitted(mi.SamplingIntegrator):
             d, spread = self._in_cone(d, spread, hit, inside, finish, sample, path, samples.REFRACTED_CONE, active)
         return self._tracer.spawn(hit, d, inside, spread), total
 
-    @dr.syntax
+    @syntax
     def _in_cone(self, d, spread, hit: Hit, inside, finish: Finish, sample, path, use, active):
         """A direction that is uniform in the cone about `d`, where the finish has one, and how far it may be off.
 
@@ -335,12 +336,12 @@ class Whitted(mi.SamplingIntegrator):
 
     # ------------------------------------------------------------------ the ray tree
 
-    @dr.syntax
+    @syntax
     def trace(self, ray: Ray, sample, active):
         """Radiance (Color3) along rays: the whole tree below each, in one kernel; if `depth_limited`, whether the limit
-        dropped a ray that the cut-off would have kept, else False; if `signing`, the signature (UInt32), else 0; and,
-        if ties are postponed, whether a ray of the tree came close to one, else False. Each is the primary ray of a
-        `sample`.
+        dropped a ray that the cut-off would have kept, else False; if `signing`, the signature (UInt32), else None;
+        and, if ties are postponed, whether a ray of the tree came close to one, else False. Each is the primary ray of
+        a `sample`.
 
         Where a surface sends on two rays, the heavier one waits on a stack in local memory.
         """
@@ -352,13 +353,13 @@ class Whitted(mi.SamplingIntegrator):
         ray = self.timed(ray, sample)
         active = active & lanes(width)
         too_deep = dr.zeros(mi.Bool, width) if self.depth_limited else False
-        signature = dr.zeros(mi.UInt32, width) if self.signing else mi.UInt32(0)
+        signature: Any = dr.zeros(mi.UInt32, width) if self.signing else None
         postpones = self.postpones_ties
         undecided = dr.zeros(mi.Bool, width) if postpones else False
-        waiting = dr.zeros(mi.UInt32, width)
+        waiting: Any = dr.zeros(mi.UInt32, width) if self.branching else None
         stack = RayStack(self.types, self.stack_size if self.branching else 0, self.sampled)
-        path = dr.full(mi.UInt32, samples.PRIMARY_PATH, width) if self.sampled else mi.UInt32(0)
-        while active:
+        path: Any = dr.full(mi.UInt32, samples.PRIMARY_PATH, width) if self.sampled else None
+        while dr.hint(active, exclude=[self, sample, postpones]):
             hit = self.closest(ray, active)
             finish, color = self.material(ray, hit)
             local, shadows, unsure = self.local_radiance(ray, hit, finish, color, sample, path)
@@ -443,18 +444,18 @@ class Whitted(mi.SamplingIntegrator):
             return self.types.Float(0), mi.Bool(False)
         return weight, active & (weight > 0) & (weight >= self.cutoff)
 
-    @dr.syntax
+    @syntax
     def local_radiance(self, ray: Ray, hit: Hit, finish: Finish, color, sample, path):
         """What a surface sends back along a ray by itself (Color3): ambient light, and what the lights add; if
-        `signing`, a word (UInt32) for the shadows that it lies in, else 0; and whether one of these is undecided.
+        `signing`, a word (UInt32) for the shadows that it lies in, else None; and whether one of these is undecided.
         """
         radiance = finish.ka * self.types.Color3(self.ambient) * color
-        shadows = dr.zeros(mi.UInt32, dr.width(ray.d)) if self.signing else mi.UInt32(0)
+        shadows: Any = dr.zeros(mi.UInt32, dr.width(ray.d)) if self.signing else None
         unsure = dr.zeros(mi.Bool, dr.width(ray.d))
         if dr.hint(self.shadows, mode="scalar"):
             lit = hit.valid & (finish.kd + finish.ks > 0)
             light = dr.zeros(mi.UInt32, dr.width(ray.d))
-            while lit & (light < self.light_count):
+            while dr.hint(lit & (light < self.light_count), exclude=[self, ray, hit, finish, color, lit, sample, path]):
                 illumination = self.light(light, ray, hit, finish, color, lit, sample, path)
                 radiance += illumination.diffuse + illumination.specular
                 unsure |= illumination.undecided

@@ -5,7 +5,6 @@ box is missed. There is one such order for every octant of directions, in which 
 Smits, Efficiency Issues for Ray Tracing, Journal of Graphics Tools 3(2), 1998.
 """
 
-import math
 from dataclasses import dataclass
 from typing import Any
 
@@ -14,9 +13,11 @@ import mitsuba as mi
 import numpy as np
 
 from mitsuba_plugins.arithmetic import quotient
+from mitsuba_plugins.intersection.coarse import unit_scale
 from mitsuba_plugins.intersection.columns import column
 from mitsuba_plugins.intersection.geometry import Box
 from mitsuba_plugins.intersection.rays import NOTHING, Ray, Real, largest
+from mitsuba_plugins.syntax import syntax
 from native_tracer.bvh import threaded_bvh
 
 SLACK = 2.0**-20
@@ -25,9 +26,6 @@ MARGIN = 2.0**-20
 """By how much, relative to the tree and the ray's origin, boxes are wider: some roundings, and what ties with a hit."""
 LEAST_SLOPE = 2.0**-60
 """Of a direction: with less, along an axis, products might overflow, and the ray moves by much less than `MARGIN`."""
-
-_LARGEST_EXPONENT = 1023
-"""Of a power of two that is a double."""
 
 
 @dataclass
@@ -47,7 +45,7 @@ class BoxTree:
     def __init__(self, types: Real, boxes: list[Box | None]) -> None:
         """Take the boxes of all objects; None of those that have no bounds."""
         self._types = types
-        scale = _scale(boxes)
+        scale = unit_scale(abs(x) for box in boxes if box is not None for corner in box for x in corner)
         self._scale = types.Float(scale)
         self._nodes, self._node_count = _nodes(boxes, scale)
         dr.make_opaque(self._node_count, self._scale)
@@ -65,7 +63,7 @@ class BoxTree:
         """A distance as `next` takes it, and a little more."""
         return mi.Float(distance * self._scale) * (1 + SLACK)
 
-    @dr.syntax
+    @syntax
     def next(self, walk: Walk, node: Any, limit: Any, skipped: Any, active: Any) -> tuple[Any, Any]:
         """The next object, from `node` on, whose box rays enter before `limit`, or NOTHING, and the node to go on at.
 
@@ -74,7 +72,7 @@ class BoxTree:
         """
         index = dr.full(mi.UInt32, NOTHING, dr.width(walk.slope))
         walking = active & (node < walk.end)
-        while walking:
+        while dr.hint(walking, exclude=[self, walk, limit, skipped]):
             corners = dr.gather(mi.Array4f, self._nodes, 2 * node, walking)
             rest = dr.gather(mi.Array4f, self._nodes, 2 * node + 1, walking)
             near = dr.max(dr.fma(mi.Vector3f(corners.xyz), walk.slope, walk.enter))
@@ -92,12 +90,6 @@ class BoxTree:
 def _octant(d: Any) -> Any:
     """Which components of a direction are negative, a bit each."""
     return sum(dr.select(component < 0, mi.UInt32(1 << axis), 0) for axis, component in enumerate(d))
-
-
-def _scale(boxes: list[Box | None]) -> float:
-    """A power of two that makes the boxes so large that single precision holds them, and distances to them."""
-    largest = max((abs(x) for box in boxes if box is not None for corner in box for x in corner), default=0.0)
-    return math.ldexp(1.0, min(-math.frexp(largest)[1], _LARGEST_EXPONENT)) if largest > 0 else 1.0
 
 
 def _nodes(boxes: list[Box | None], scale: float) -> tuple[Any, Any]:

@@ -12,6 +12,7 @@ from mitsuba_plugins.intersection.primitives import Primitives
 from mitsuba_plugins.intersection.rays import NOTHING, Ray, Real, largest
 from mitsuba_plugins.intersection.rounding import most_blur
 from mitsuba_plugins.intersection.surfaces import ExactSurfaces
+from mitsuba_plugins.syntax import syntax
 
 
 class BvhSurfaces(ExactSurfaces):
@@ -31,14 +32,14 @@ class BvhSurfaces(ExactSurfaces):
         _, found, _, close = self._search(ray, distance, light, active)
         return found, close
 
-    @dr.syntax
+    @syntax
     def _search(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any, Any, Any]:
         """What is met first before `distance`; with a light there, anything that is in its way."""
         width = dr.width(ray.d)
         t_best = dr.zeros(self._types.Float, width) + distance
         object_best = dr.full(mi.UInt32, NOTHING, width)
         primitive_best = dr.zeros(mi.UInt32, width)
-        t_second = dr.full(self._types.Float, dr.inf, width)
+        t_second = dr.full(self._types.Float, dr.inf, width) if light is None else None
         close = dr.full(mi.Bool, False, width)
         reach = largest(ray.o)
         limit = self._tree.limit(t_best)
@@ -47,9 +48,9 @@ class BvhSurfaces(ExactSurfaces):
         # First the object that the ray travels inside, or leaves: a convex one it does not meet again.
         index = ray.object if self.primitives.any_concave else dr.select(ray.inside, ray.object, NOTHING)
         searching = mi.Bool(active)
-        while searching:
+        while dr.hint(searching, exclude=[self, ray, distance, light, reach, walk]):
             tested = searching & (index != NOTHING)
-            if tested:
+            if dr.hint(tested, exclude=[self, ray, distance, light, reach, walk, index, tested]):
                 crossing = self.primitives.intersect(ray, index, tested, reach, which_piece=light is None)
                 t, primitive = crossing.t, crossing.primitive
                 close |= tested & (crossing.close | (t < most_blur(t) * reach))

@@ -4,6 +4,7 @@ The distance between such a point and such a surface is 0, but computed along a 
 sign, another one for every ray. So it is settled once, before rays are traced, what lies on what, by the native tracer.
 """
 
+import math
 from dataclasses import dataclass
 from typing import TYPE_CHECKING, Any, NamedTuple
 
@@ -17,12 +18,16 @@ from mitsuba_plugins.intersection.csg import Csg
 from mitsuba_plugins.intersection.geometry import Surface
 from mitsuba_plugins.intersection.passages import Crossing
 from mitsuba_plugins.intersection.rays import INVERTED, UPRIGHT, Ray, Real
-from mitsuba_plugins.intersection.shapes.kind import ShapeKind, Vector
+from mitsuba_plugins.intersection.shapes.kind import Row, ShapeKind, Vector
+from mitsuba_plugins.syntax import syntax
 
 if TYPE_CHECKING:
     from collections.abc import Sequence
 
 Numbers = NDArray[np.float64]
+
+INNER_ROOM = 2.0**-16
+"""Relative to its radius, how far away from a ball's surface lights are of which that is known without tests."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -112,11 +117,18 @@ class LightContacts:
         self.objects = {contact.object for contact in found}
         """The objects that some light lies on."""
         self._any_csg = contacts.any_csg
+        self._lights = [(tuple(at), radius) for at, radius in zip(positions.tolist(), radii.tolist(), strict=True)]
         self._end = column(mi.UInt32, np.cumsum([len(of_one) for of_one in by_light], dtype=np.uint32))
         self._primitive = column(mi.UInt32, [contact.primitive for contact in found])
         self._rows = column(types.Float, [x for c in found for x in (*c.normal, c.curvature)] or [0.0] * 4)
 
-    @dr.syntax
+    def all_within(self, ball: Row) -> bool:
+        """Whether all lights lie inside of a ball, away from its surface."""
+        *center, radius = ball
+        inner = radius * (1 - INNER_ROOM)
+        return all(math.dist(center, at) + size < inner for at, size in self._lights)
+
+    @syntax
     def lies_at(self, light: Any, crossing: Crossing, d: Any, active: Any) -> Any:
         """Whether rays of direction `d` that lead to a light cross there what the light lies on.
 
@@ -131,14 +143,14 @@ class LightContacts:
             if dr.hint(self._any_csg, mode="scalar"):
                 enters ^= primitive >= INVERTED
                 primitive &= UPRIGHT
-            while active & (i < end):
+            while dr.hint(active & (i < end), exclude=[self, d, active, primitive, enters, end]):
                 row = dr.gather(self._types.Vector4, self._rows, i, active)
                 there = (row.w == 0) | (enters == (dr.dot(self._types.Vector3(row.xyz), d) < 0))
                 result |= there & (primitive == dr.gather(mi.UInt32, self._primitive, i, active))
                 i += 1
         return result
 
-    @dr.syntax
+    @syntax
     def grazes(self, light: Any, primitive: Any, active: Any) -> Any:
         """Whether a primitive is a plane that a light lies in, and so shines along."""
         result = mi.Bool(False)
@@ -146,7 +158,7 @@ class LightContacts:
             result = dr.full(mi.Bool, False, dr.width(primitive, active))
             primitive = primitive & UPRIGHT if self._any_csg else primitive
             i, end = self._range(light, active)
-            while active & (i < end):
+            while dr.hint(active & (i < end), exclude=[self, primitive, active, end]):
                 curvature = dr.gather(self._types.Float, self._rows, 4 * i + 3, active)
                 result |= (curvature == 0) & (primitive == dr.gather(mi.UInt32, self._primitive, i, active))
                 i += 1

@@ -50,7 +50,6 @@ class Csg(abc.ABC):
     program: tuple[int, ...]
 
     convex = False
-    bounded_first = True
 
     def deciding_ties(self) -> "Csg":
         """As `Solid` has it."""

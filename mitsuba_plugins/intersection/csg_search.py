@@ -16,6 +16,7 @@ from mitsuba_plugins.intersection.passages import Crossing
 from mitsuba_plugins.intersection.rays import NOTHING, UPRIGHT, Ray
 from mitsuba_plugins.intersection.rounding import most_blur
 from mitsuba_plugins.intersection.shapes.kind import ShapeKind
+from mitsuba_plugins.syntax import syntax
 
 BOUND_ROOM = 2.0**-20
 """By how much, relatively, a sphere around a leaf is larger."""
@@ -137,7 +138,7 @@ class _Search:
         return self.csg.value([(bits & (1 << k)) != 0 for k in range(self.count)])
 
 
-@dr.syntax
+@syntax
 def _start(search: _Search) -> _Start:
     """By all leaves, one after the other."""
     width = search.width
@@ -148,7 +149,7 @@ def _start(search: _Search) -> _Start:
     nowhere = dr.full(mi.Bool, False, width)
     k = dr.zeros(mi.UInt32, width)
     bit = dr.full(mi.UInt64, 1, width)
-    while k < search.count:
+    while dr.hint(k < search.count, exclude=[search, nowhere]):
         comes_near = search.comes_near(k)
         leaf = search.meet(k, nowhere, comes_near)
         near |= dr.select(comes_near, bit, 0)
@@ -164,7 +165,7 @@ def _start(search: _Search) -> _Start:
     return _Start(near, met, passed, inside_sheet, inside, close, between)
 
 
-@dr.syntax
+@syntax
 def _first_change(search: _Search, start: _Start) -> Crossing:
     """From one crossing to the next, until the value changes."""
     ray, width, kind = search.ray, search.width, type(search.reach)
@@ -175,11 +176,11 @@ def _first_change(search: _Search, start: _Start) -> Crossing:
     started = dr.full(mi.Bool, False, width)
     met, passed = mi.UInt64(start.met), mi.UInt64(start.passed)
     walking = met != 0
-    while walking:
+    while dr.hint(walking, exclude=[search, start]):
         # What is known to lie ahead of a ray's start may be no farther than t_min.
         next_t, next_error = dr.full(kind, dr.inf, width), dr.zeros(kind, width)
         left = mi.UInt64(met)
-        while walking & (left != 0):
+        while dr.hint(walking & (left != 0), exclude=[search, start, walking, behind, started]):
             ahead = search.meet(mi.UInt32(dr.tzcnt(left)), start.inside_sheet, walking & (left != 0)).ahead
             for distance, its_error, _, _, known in ahead.crossings():
                 closer = ((distance > behind) | (known & ~started)) & (distance < next_t)
@@ -193,7 +194,7 @@ def _first_change(search: _Search, start: _Start) -> Crossing:
         near = most_blur(next_t) * (search.reach + next_t)
         walking &= next_t < dr.inf
         left = mi.UInt64(met)
-        while walking & (left != 0):
+        while dr.hint(walking & (left != 0), exclude=[search, start, walking, next_t, next_error, near]):
             ahead = search.meet(mi.UInt32(dr.tzcnt(left)), start.inside_sheet, walking & (left != 0)).ahead
             others = left & (left - 1)
             bit = left ^ others
@@ -225,13 +226,13 @@ def _first_change(search: _Search, start: _Start) -> Crossing:
     return Crossing(t, enters, primitive, error, (start.close | tied) & (not search.by_rules))
 
 
-@dr.syntax
+@syntax
 def _nearest_to_start(search: _Search, start: _Start, lost: Any) -> Any:
     """The primitive, but those that a ray starts on, whose crossing is nearest to where it starts, where it is lost."""
     nearest = dr.full(type(search.reach), dr.inf, search.width)
     found = dr.zeros(mi.UInt32, search.width)
     left = mi.UInt64(start.near)
-    while lost & (left != 0):
+    while dr.hint(lost & (left != 0), exclude=[search, start, lost]):
         ahead = search.meet(mi.UInt32(dr.tzcnt(left)), start.inside_sheet, lost & (left != 0)).ahead
         for t, _, primitive, enters, _ in ahead.crossings():
             closer = dr.abs(t) < nearest

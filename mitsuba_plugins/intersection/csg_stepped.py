@@ -15,6 +15,7 @@ from mitsuba_plugins.intersection.csg_unrolled import UnrolledCsg
 from mitsuba_plugins.intersection.leaf_passage import Membership, marked
 from mitsuba_plugins.intersection.passages import Crossing
 from mitsuba_plugins.intersection.rays import Ray
+from mitsuba_plugins.syntax import syntax
 
 ROOM = 2.0**-20
 """By how much, relatively, the steps begin before the csg."""
@@ -94,12 +95,12 @@ def _bounds(leaf: Membership) -> tuple[Any, Any]:
     return dr.select(leaf.before, -dr.inf, first), dr.select(ends_inside, dr.inf, last)
 
 
-@dr.syntax
+@syntax
 def _step(search: _Leaves, width: int) -> Crossing:
     t = search.next(search.start())
     after = dr.full(mi.Bool, False, width)
     walking = t < dr.inf
-    while walking:
+    while dr.hint(walking, exclude=[search]):
         before, after = search.values(t)
         walking &= before == after
         t = dr.select(walking, search.next(t), t)

@@ -69,6 +69,20 @@ class Surface:
         return _roomy(low, (d + max(0.0, x), e + max(0.0, y), f + max(0.0, z)))
 
     @property
+    def ball(self) -> Row | None:
+        """Centre and radius, if it is a ball."""
+        return self.shapes[0][1].ball if isinstance(self.solid, Single) else None
+
+    @property
+    def surrounding_ball(self) -> Row | None:
+        """Centre and radius of a ball around it; None where it has no bounds."""
+        if self.box is None or self.ball is not None:
+            return self.ball
+        low, high = self.box
+        x, y, z = ((a + b) / 2 for a, b in zip(low, high, strict=True))
+        return x, y, z, math.dist(low, high) / 2
+
+    @property
     def rows(self) -> list[Row]:
         """Of all shapes, one after the other."""
         return [row for _, shape in self.shapes for row in shape.rows]

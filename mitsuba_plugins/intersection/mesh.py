@@ -20,6 +20,7 @@ from mitsuba_plugins.intersection.mitsuba_primitives import MitsubaPrimitives
 from mitsuba_plugins.intersection.primitives import Primitives
 from mitsuba_plugins.intersection.rays import NOTHING, Ray, Real, largest, ray_reach
 from mitsuba_plugins.intersection.surfaces import ExactSurfaces
+from mitsuba_plugins.syntax import syntax
 
 OFFSET = 2.0**-20
 """Start of a ray off its surface, in units of the largest coordinate involved: 16 units in the last place."""
@@ -50,7 +51,7 @@ class MeshSurfaces(ExactSurfaces):
         # Not Scene.ray_test, which is less careful with distant spheres than ray_intersect_preliminary.
         return self._search(ray, distance, light, active)[1], None
 
-    @dr.syntax
+    @syntax
     def _search(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any, Any]:
         """What is met first before `distance`, at which there may be a light."""
         width = dr.width(ray.d)
@@ -61,7 +62,7 @@ class MeshSurfaces(ExactSurfaces):
         primitive = dr.zeros(mi.UInt32, width)
         searching = mi.Bool(active)
         steps = dr.zeros(mi.UInt32, width)
-        while searching:
+        while dr.hint(searching, exclude=[self, ray, distance, light, reach]):
             probe = mi.Ray3f(mi.Point3f(start), mi.Vector3f(ray.d))
             pi = self._scene.ray_intersect_preliminary(probe, coherent=False, active=searching)
             met = searching & pi.is_valid()

@@ -9,6 +9,7 @@ import mitsuba as mi
 
 from mitsuba_plugins.intersection.rays import Ray
 from mitsuba_plugins.intersection.rounding import most_blur
+from mitsuba_plugins.syntax import syntax
 
 
 @dataclass
@@ -63,7 +64,7 @@ def first_crossing(passage: Passage, ray: Ray, own: Any, reach: Any, which_piece
     )
 
 
-@dr.syntax
+@syntax
 def crossing_if(active: Any, ray: Ray, width: int, intersect: Callable[[], Crossing]) -> Crossing:
     """What `intersect()` gives, in a branch: where packets of rays may all be spared it."""
     t = dr.full(type(ray.t_min), dr.inf, width)
@@ -71,7 +72,7 @@ def crossing_if(active: Any, ray: Ray, width: int, intersect: Callable[[], Cross
     primitive = dr.zeros(mi.UInt32, width)
     error = dr.zeros(type(ray.t_min), width)
     close = dr.full(mi.Bool, False, width)
-    if active:
+    if dr.hint(active, exclude=[intersect]):
         crossing = intersect()
         t, enters, primitive, close = crossing.t, crossing.enters, crossing.primitive, crossing.close
         error += crossing.error

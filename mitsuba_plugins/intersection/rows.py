@@ -6,6 +6,8 @@ from typing import Any
 import drjit as dr
 import mitsuba as mi
 
+from mitsuba_plugins.syntax import syntax
+
 
 class GatheredRows:
     """The rows of primitives from `first` on, `count` of them, that differ from ray to ray; see `Rows`."""
@@ -31,12 +33,12 @@ class GatheredRows:
             return self._first_row
         return self._gather(self._first + k, self._active)
 
-    @dr.syntax
+    @syntax
     def fold(self, step: Callable[[Any, Any, Any], Any], state: Any) -> Any:
         """A loop."""
         primitive = mi.UInt32(self._first) + dr.zeros(mi.UInt32, self.width)
         end = self._first + self._count
-        while self._active & (primitive < end):
+        while dr.hint(self._active & (primitive < end), exclude=[self, step, end]):
             state = step(state, primitive, self._gather(primitive, self._active))
             primitive += 1
         return state

@@ -16,11 +16,6 @@ class Solid(Protocol):
         """Whether a ray that leaves it never meets it again."""
         ...
 
-    @property
-    def bounded_first(self) -> bool:
-        """Whether it takes so long to intersect that a sphere around it is tested before."""
-        ...
-
     def deciding_ties(self) -> "Solid":
         """The same with the code by which ties are decided."""
         ...
@@ -44,11 +39,6 @@ class Single:
     def convex(self) -> bool:
         """As its kind."""
         return self.kind.CONVEX
-
-    @property
-    def bounded_first(self) -> bool:
-        """As its kind."""
-        return self.kind.BOUNDED_FIRST
 
     def deciding_ties(self) -> Solid:
         """Its own."""

@@ -11,6 +11,7 @@ from mitsuba_plugins.intersection.passages import Crossing
 from mitsuba_plugins.intersection.primitives import Primitives
 from mitsuba_plugins.intersection.rays import NOTHING, Ray, largest
 from mitsuba_plugins.intersection.rounding import most_blur
+from mitsuba_plugins.syntax import syntax
 
 
 class Candidates(Protocol):
@@ -58,10 +59,10 @@ class Ties:
         self._contacts = contacts
         self._candidates = candidates
 
-    @dr.syntax
+    @syntax
     def closest(self, ray: Ray, t: Any, index: Any, primitive: Any, close: Any) -> tuple[Any, Any, Any]:
         """Distance, object and primitive of the first hit: where rays are not close to a tie as they were found."""
-        if close:
+        if dr.hint(close, exclude=[self, ray, close]):
             width = dr.width(close)
             nobody = dr.full(mi.UInt32, NOTHING, width)
             walk = self._candidates.walk(ray)
@@ -71,7 +72,7 @@ class Ties:
             error = dr.zeros(type(t), width)
             node = mi.UInt32(walk.start)
             searching = mi.Bool(close)
-            while searching:
+            while dr.hint(searching, exclude=[self, ray, walk, nobody]):
                 tested, node = self._candidates.next(walk, node, self._limit(ray, nearest), nobody, searching)
                 searching &= tested != NOTHING
                 met = self._intersect(ray, tested, searching)
@@ -83,7 +84,7 @@ class Ties:
             primitive = dr.zeros(mi.UInt32, width)
             node = mi.UInt32(walk.start)
             searching = close & (nearest < dr.inf)
-            while searching:
+            while dr.hint(searching, exclude=[self, ray, walk, nobody, nearest, error]):
                 tested, node = self._candidates.next(walk, node, self._limit(ray, nearest), nobody, searching)
                 searching &= tested != NOTHING
                 met = self._intersect(ray, tested, searching)
@@ -93,17 +94,17 @@ class Ties:
                 primitive = dr.select(first, met.primitive, primitive)
         return t, index, primitive
 
-    @dr.syntax
+    @syntax
     def blocker(self, ray: Ray, distance: Any, light: Any, found: Any, close: Any) -> Any:
         """Some object before a light at `distance`, or NOTHING; where rays are not close to a tie what was found."""
-        if close:
+        if dr.hint(close, exclude=[self, ray, distance, light, close]):
             width = dr.width(close)
             nobody = dr.full(mi.UInt32, NOTHING, width)
             found = dr.full(mi.UInt32, NOTHING, width)
             walk = self._candidates.walk(ray)
             node = mi.UInt32(walk.start)
             searching = mi.Bool(close)
-            while searching:
+            while dr.hint(searching, exclude=[self, ray, distance, light, walk, nobody]):
                 tested, node = self._candidates.next(walk, node, self._limit(ray, distance), nobody, searching)
                 searching &= tested != NOTHING
                 met = self._intersect(ray, tested, searching)

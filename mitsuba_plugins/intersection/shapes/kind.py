@@ -28,6 +28,8 @@ class Shape(NamedTuple):
     """Around it; None where there is none."""
     extent: float = 0.0
     """The largest coordinate of what is rounded to single precision for Mitsuba, but a mesh's."""
+    ball: Row | None = None
+    """Centre and radius, if it is a ball."""
     meshed: bool = False
     """Whether Mitsuba has a mesh for it, of which the description tells."""
 
@@ -81,8 +83,6 @@ class ShapeKind(Protocol):
     """Whether a shape has several primitives, planes, and a point of one may lie beside the shape."""
     CONVEX: bool
     """Whether a ray that leaves a shape never meets it again."""
-    BOUNDED_FIRST: bool
-    """Whether it takes so long to intersect one that a sphere around it is tested before."""
 
     def read(self, entry: dict[str, Any]) -> Shape:
         """A shape of a description.

@@ -18,7 +18,6 @@ from native_tracer.incidence import surfaces_at, within
 ROWS = 1
 FACETED = True
 CONVEX = True
-BOUNDED_FIRST = True
 
 
 def read(entry: dict[str, Any]) -> Shape:
@@ -63,11 +62,13 @@ class _Span:
     leave: Any
     enter_plane: Any  # UInt32, as is `leave_plane`
     leave_plane: Any
-    enter_error: Any  # Float, as is `leave_error`
-    leave_error: Any
-    above: Any  # Float, how far above a plane that it runs along the ray starts, the largest of all
-    outside: Any  # Bool, whether it runs outside of one
-    between: Any  # Float, from where it crosses one plane to where it crosses the next
+    # Where ties are decided:
+    enter_error: Any = None  # Float, as is `leave_error`
+    leave_error: Any = None
+    outside: Any = None  # Bool, whether it runs outside of a plane
+    # Where they are told:
+    above: Any = None  # Float, how far above a plane that it runs along the ray starts, the largest of all
+    between: Any = None  # Float, from where it crosses one plane to where it crosses the next
 
 
 def _whole_line(ray: Ray, width: int) -> _Span:
@@ -78,11 +79,6 @@ def _whole_line(ray: Ray, width: int) -> _Span:
         leave=dr.full(kind, dr.inf, width),
         enter_plane=dr.zeros(mi.UInt32, width),
         leave_plane=dr.zeros(mi.UInt32, width),
-        enter_error=dr.zeros(kind, width),
-        leave_error=dr.zeros(kind, width),
-        above=dr.full(kind, -dr.inf, width),
-        outside=dr.full(mi.Bool, False, width),
-        between=dr.full(kind, dr.inf, width),
     )
 
 
@@ -117,7 +113,8 @@ def passage(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
             between=dr.select(between < span.between, between, span.between),
         )
 
-    span = rows.fold(narrow, _whole_line(ray, rows.width))
+    infinity = dr.full(type(ray.t_min), dr.inf, rows.width)
+    span = rows.fold(narrow, replace(_whole_line(ray, rows.width), above=-infinity, between=infinity))
     gap = span.enter - span.leave
     at_edge = (gap > 0) & (gap <= most_blur(gap) * (reach + span.enter))
     # More than `surface_error` says, for planes that pass as near as that.
@@ -159,7 +156,10 @@ def passage_by_rules(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
             outside=span.outside | ((dr.abs(slope) <= ray.spread) & (height > error)),
         )
 
-    span = rows.fold(narrow, _whole_line(ray, rows.width))
+    exact = dr.zeros(type(ray.t_min), rows.width)
+    inside = dr.full(mi.Bool, False, rows.width)
+    start = replace(_whole_line(ray, rows.width), enter_error=exact, leave_error=exact, outside=inside)
+    span = rows.fold(narrow, start)
     return Passage(
         near=span.enter,
         far=span.leave,

@@ -36,7 +36,6 @@ from native_tracer.incidence import surfaces_at
 ROWS = 4
 FACETED = False
 CONVEX = False
-BOUNDED_FIRST = True
 
 DISTINCT = 2.0**-10
 """An axis along which the surface bends this little, compared with the others, need not have its centre near by."""

@@ -16,14 +16,14 @@ from native_tracer.incidence import surfaces_at
 ROWS = 1
 FACETED = False
 CONVEX = True
-BOUNDED_FIRST = False
 
 
 def read(entry: dict[str, Any]) -> Shape:
     """`"sphere": [x, y, z, r]`."""
     x, y, z, r = entry["sphere"]
     rows = [(x, y, z, r)]
-    return Shape(rows, rows, (None,), ((x - r, y - r, z - r), (x + r, y + r, z + r)), max(map(abs, (x, y, z))) + r)
+    box = (x - r, y - r, z - r), (x + r, y + r, z + r)
+    return Shape(rows, rows, (None,), box, max(map(abs, (x, y, z))) + r, rows[0])
 
 
 def contacts(point: Any, rows: Any) -> list[Contact]:
