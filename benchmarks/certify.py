@@ -1,11 +1,13 @@
-"""Prints the table of docs/certify.md: seconds, what is undecided and why, and what methods get wrong.
+"""Prints the table of docs/certify.md: processor seconds, what is undecided and why, and what methods get wrong.
 
 .venv/bin/python benchmarks/certify.py [--size W H] [--methods NAME,...] [SCENE...]
 
-A cell is empty where a method is missing, or does not draw such a scene.
+Of the pixels that a method gets wrong those by more than a level stand in brackets. A cell is empty where a method is
+missing, or does not draw such a scene.
 """
 
 import argparse
+import time
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -38,10 +40,12 @@ def main() -> None:
 def _row(file: Path, settings: Settings, methods: Sequence[Method]) -> list[str]:
     """A scene's."""
     scene = load_scene(file)
+    started = time.process_time()
     certificate = certify(scene, settings)
+    seconds = time.process_time() - started
     rungs = np.bincount(certificate.rung.ravel(), minlength=len(certificate.digits))
     undecided = ", ".join(f"{name} {count}" for name, count in certificate.counts().items()) or "0"
-    row = [file.stem, f"{certificate.seconds['certify']:.1f}", *map(str, rungs[1:]), str(certificate.tied.sum())]
+    row = [file.stem, f"{seconds:.1f}", *map(str, rungs[1:]), str(certificate.tied.sum())]
     row.append(undecided)
     for method in methods:
         try:
@@ -49,7 +53,9 @@ def _row(file: Path, settings: Settings, methods: Sequence[Method]) -> list[str]
         except RendererUnavailable:
             row.append("")
             continue
-        row.append(str(int((certificate.misses(levels(rendering)) > 0).sum())))
+        misses = certificate.misses(levels(rendering))
+        wrong, more = int((misses > 0).sum()), int((misses > 1).sum())
+        row.append(f"{wrong} ({more})" if more else str(wrong))
     return row
 
 

@@ -10,6 +10,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from converter.certify.certificate import undetermined
 from converter.commands import main
 from converter.grade.judge import Verdict, judge_picture, mistakes
 from converter.grade.naming import consistent
@@ -361,6 +362,16 @@ def test_pixels_that_single_precision_cannot_decide_do_not_count():
     verdict = judge_picture(LADDER / "15_mirrors.in", levels, False, settings)
     assert 0.0012 < verdict.wrong < 0.0014
     assert not verdict.right
+
+
+def test_pixels_that_the_scene_cannot_decide_do_not_count(monkeypatch):
+    scene = load_scene(LADDER / "20_nested.in")
+    settings = Settings(width=160, height=120)
+    left_open = undetermined(scene, settings, ulps=1.0)
+    assert 0 < left_open.mean() < 0.01
+    assert undecided(scene, settings)[left_open].all()
+    monkeypatch.setattr("converter.grade.undecided.MOST_RAYS", 1000)
+    assert not undecided(scene, settings)[left_open].all()
 
 
 def test_scenes_in_which_no_mistakes_are_looked_for_are_compared(monkeypatch):

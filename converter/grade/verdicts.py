@@ -19,7 +19,7 @@ from converter.why.picture import read_theirs
 
 JUDGED = "judged"
 """Folder of a report that holds verdicts."""
-_VERSION = "2"
+_VERSION = "3"
 
 
 def judge_all(
