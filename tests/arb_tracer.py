@@ -12,7 +12,8 @@ from functools import cmp_to_key
 from typing import NamedTuple
 
 import numpy as np
-from flint import arb, arb_mat, ctx, fmpq
+from arb_vectors import Vec, added, cross, difference, dot, gradient, number, numbers, product, scaled, unit
+from flint import arb, arb_mat, ctx
 
 from converter.images.texture import read_texture
 from converter.scene.model import Checker, Csg, Polyhedron, Primitive, Quadric, Scene, Shape, Solid, Sphere
@@ -25,8 +26,6 @@ TIE = Fraction(1, 2**500)
 OUTSIDE = -1
 """In the place of the body that a ray travels in."""
 OPERATIONS = {"+": frozenset.union, "-": frozenset.difference, "&": frozenset.intersection}
-
-Vec = tuple[arb, arb, arb]
 
 
 class Undecided(ArithmeticError):  # noqa: N818 - what it says
@@ -364,67 +363,8 @@ class ArbTracer:
         return tuple(arb(int(level)) / 255 for level in levels[place[1], place[0]])
 
 
-# ---- Numbers and vectors
-
-
-def number(value: float | Fraction) -> arb:
-    """The decimal number that a file has for `value`."""
-    exact = Fraction(repr(value)) if isinstance(value, float) else Fraction(value)
-    return arb(fmpq(exact.numerator, exact.denominator))
-
-
-def numbers(values: Sequence[float]) -> tuple[arb, ...]:
-    """Such for each value."""
-    return tuple(map(number, values))
-
-
 def primitives(shape: Shape) -> list[Primitive]:
     """A shape's leaves, in their order."""
     if not isinstance(shape, Csg):
         return [shape]
     return [leaf for operand in shape.operands for leaf in primitives(operand.shape)]
-
-
-def gradient(n: Sequence[arb], p: Vec) -> Vec:
-    """Of a quadric's value, at a point."""
-    x, y, z = p
-    return (
-        2 * n[0] * x + n[3] * y + n[4] * z + n[6],
-        2 * n[1] * y + n[3] * x + n[5] * z + n[7],
-        2 * n[2] * z + n[4] * x + n[5] * y + n[8],
-    )
-
-
-def dot(a: Sequence[arb], b: Sequence[arb]) -> arb:
-    """Their inner product."""
-    return a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-
-
-def cross(a: Vec, b: Vec) -> Vec:
-    """Their vector product."""
-    return (a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0])
-
-
-def added(a: Vec, b: Vec) -> Vec:
-    """Their sum."""
-    return (a[0] + b[0], a[1] + b[1], a[2] + b[2])
-
-
-def difference(a: Sequence[arb], b: Sequence[arb]) -> Vec:
-    """a - b."""
-    return (a[0] - b[0], a[1] - b[1], a[2] - b[2])
-
-
-def product(a: Vec, b: Vec) -> Vec:
-    """Number by number."""
-    return (a[0] * b[0], a[1] * b[1], a[2] * b[2])
-
-
-def scaled(a: Vec, factor: arb) -> Vec:
-    """A multiple."""
-    return (a[0] * factor, a[1] * factor, a[2] * factor)
-
-
-def unit(a: Vec) -> Vec:
-    """Of length 1."""
-    return scaled(a, 1 / dot(a, a).sqrt())
