@@ -36,18 +36,48 @@ bool settle(const I& channel, std::uint8_t& low, std::uint8_t& high) {
 }
 
 template <typename End>
+std::unique_ptr<PreparedScene<End>> prepared(const Scene& scene) {
+    std::feclearexcept(exceptions);
+    auto result = std::make_unique<PreparedScene<End>>(scene);
+    if (std::fetestexcept(exceptions) != 0) {
+        throw Undecided{Reason::range};
+    }
+    return result;
+}
+
+template <typename End>
 class Rung {
  public:
+    // Throws Undecided where numbers are beyond those of a double.
     Rung(const Scene& scene, const Tree& tree, int number, bool last)
-        : prepared_(scene), tree_(tree), number_(number), last_(last) {}
+        : prepared_(prepared<End>(scene)), tree_(tree), number_(number), last_(last) {
+        if (wide) {
+            try {
+                doubles_ = prepared<double>(scene);
+            } catch (const Undecided&) {  // this rung can do without
+            }
+        }
+    }
 
     // A thread's share: `next` gives the indices of pixels, as long as there are any.
     template <typename Next>
     void work(const std::vector<std::array<int, 2>>& pixels, std::vector<Pixel>& results, const Next& next) const {
         const Upward upward;
-        Tracer<End> tracer(prepared_, tree_, last_);
+        Tracer<End> thorough(*prepared_, tree_, last_, nullptr);
+        if (!doubles_) {
+            for (std::size_t i = 0; next(i);) {
+                results[i] = one(thorough, pixels[i]);
+            }
+            return;
+        }
+        Tracer<double> quick(*doubles_, tree_, false, nullptr);
+        Tracer<End> tracer(*prepared_, tree_, last_, &quick);
         for (std::size_t i = 0; next(i);) {
             results[i] = one(tracer, pixels[i]);
+            // Doubles may have left their range, or tell too little of a colour.
+            if (results[i].reason == Reason::range || results[i].reason == Reason::byte) {
+                results[i] = one(thorough, pixels[i]);
+            }
         }
     }
 
@@ -74,7 +104,10 @@ class Rung {
     }
 
  private:
-    PreparedScene<End> prepared_;
+    static constexpr bool wide = !std::is_same_v<End, double>;
+
+    std::unique_ptr<PreparedScene<End>> prepared_;
+    std::unique_ptr<PreparedScene<double>> doubles_;
     const Tree& tree_;
     int number_;
     bool last_;

@@ -111,6 +111,35 @@ class Bodies {
         return meet_csg(index, body, ray, met);
     }
 
+    // What another kind of intervals has found of this ray, with its own place. Throws Undecided.
+    Met<End> located(const Met<double>& found, const R& ray) {
+        Met<End> met{{}, found.body, found.surface, found.inside, found.behind};
+        const S& s = surface(found.surface);
+        if (s.kind == Kind::plane) {
+            int side;
+            if (meet_plane(s, ray, met.t, side) == 0) {
+                throw Undecided{Reason::hit};
+            }
+            return met;
+        }
+        const Body& body = scene_.scene.bodies[static_cast<std::size_t>(found.body)];
+        const bool own = ray.body == found.body && body.program.empty();
+        const Passage<End> passage =
+            s.kind == Kind::sphere ? pass_sphere(found.surface, ray, own) : pass_quadric(found.surface, ray, own);
+        int places = 0;
+        for (int i = 0; i < passage.count; ++i) {
+            const I& t = passage.crossings[static_cast<std::size_t>(i)].t;
+            if (t.low_double() <= found.t.high() && t.high_double() >= found.t.low()) {
+                met.t = t;
+                ++places;
+            }
+        }
+        if (places != 1) {
+            throw Undecided{Reason::hit};
+        }
+        return met;
+    }
+
     // Whether two distances are certainly different, and which is smaller: -1, 0 (equal by rule), 1.
     int order(const Crossing<End>& a, const Crossing<End>& b, Reason reason) {
         if (a.t.high() < b.t.low()) {

@@ -137,4 +137,9 @@ class Interval {
     End minus_low_ = 0, high_ = 0;
 };
 
+template <typename End>
+Interval<End> widened(const Interval<double>& x) {
+    return Interval<End>::between(End(x.low()), End(x.high()));
+}
+
 }  // namespace certified

@@ -10,12 +10,25 @@
 #include <vector>
 
 #include "interval.h"
+#include "prepared.h"
 #include "scene.h"
 
 namespace certified {
 
-// A ray in doubles, which encloses another.
-struct DoubleRay {
+// What a ray's tests against boxes share.
+struct Slabs {
+    using Axes = Vector<Interval<double>>;
+
+    Slabs(const Axes& start, const Axes& way) : origin{start.x, start.y, start.z}, direction{way.x, way.y, way.z} {
+        for (std::size_t axis = 0; axis < 3; ++axis) {
+            const Interval<double>& d = direction[axis];
+            sign[axis] = d.positive() ? 1 : d.negative() ? -1 : 0;
+            if (sign[axis] != 0) {
+                inverse[axis] = Interval<double>(1) / d;
+            }
+        }
+    }
+
     std::array<Interval<double>, 3> origin, direction, inverse;
     std::array<int, 3> sign;  // of the direction's coordinates; 0 where it is not certain
 };
@@ -42,7 +55,7 @@ class Tree {
 
     // Calls visit(body, near) for every body that the ray may meet before `reach()`; near: not before that distance.
     template <typename Visit, typename Reach>
-    void search(const DoubleRay& ray, const Visit& visit, const Reach& reach) const {
+    void search(const Slabs& ray, const Visit& visit, const Reach& reach) const {
         for (const int body : boundless_) {
             visit(body, 0.0);
         }
@@ -114,7 +127,7 @@ class Tree {
     }
 
     // Slabs; where a direction's sign is not certain, that axis excludes nothing.
-    static bool may_meet(const DoubleRay& ray, const Box& box, double reach, double& near) {
+    static bool may_meet(const Slabs& ray, const Box& box, double reach, double& near) {
         double leave = reach;
         near = 0;
         for (std::size_t axis = 0; axis < 3; ++axis) {
