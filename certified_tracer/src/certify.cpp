@@ -51,11 +51,10 @@ class Rung {
     // Throws Undecided where numbers are beyond those of a double.
     Rung(const Scene& scene, const Tree& tree, int number, bool last)
         : prepared_(prepared<End>(scene)), tree_(tree), number_(number), last_(last) {
-        if (wide) {
-            try {
-                doubles_ = prepared<double>(scene);
-            } catch (const Undecided&) {  // this rung can do without
-            }
+        try {
+            doubles_ = prepared<double>(scene);
+            plain_ = std::make_unique<PlainScene>(*doubles_);
+        } catch (const Undecided&) {  // this rung can do without
         }
     }
 
@@ -63,19 +62,19 @@ class Rung {
     template <typename Next>
     void work(const std::vector<std::array<int, 2>>& pixels, std::vector<Pixel>& results, const Next& next) const {
         const Upward upward;
-        Tracer<End> thorough(*prepared_, tree_, last_, nullptr);
-        if (!doubles_) {
+        Tracer<End> thorough(*prepared_, tree_, last_, nullptr, nullptr);
+        if (!plain_) {
             for (std::size_t i = 0; next(i);) {
                 results[i] = one(thorough, pixels[i]);
             }
             return;
         }
-        Tracer<double> quick(*doubles_, tree_, false, nullptr);
-        Tracer<End> tracer(*prepared_, tree_, last_, &quick);
+        Tracer<double> quick(*doubles_, tree_, false, plain_.get(), nullptr);
+        Tracer<End> tracer(*prepared_, tree_, last_, plain_.get(), &quick);
         for (std::size_t i = 0; next(i);) {
             results[i] = one(tracer, pixels[i]);
             // Doubles may have left their range, or tell too little of a colour.
-            if (results[i].reason == Reason::range || results[i].reason == Reason::byte) {
+            if (wide && (results[i].reason == Reason::range || results[i].reason == Reason::byte)) {
                 results[i] = one(thorough, pixels[i]);
             }
         }
@@ -108,6 +107,7 @@ class Rung {
 
     std::unique_ptr<PreparedScene<End>> prepared_;
     std::unique_ptr<PreparedScene<double>> doubles_;
+    std::unique_ptr<PlainScene> plain_;
     const Tree& tree_;
     int number_;
     bool last_;

@@ -5,8 +5,10 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <numeric>
 #include <vector>
 
+#include "plain.h"
 #include "prepared.h"
 
 namespace certified {
@@ -87,10 +89,12 @@ class Bodies {
     using R = Ray<End>;
     using S = typename PreparedScene<End>::PreparedSurface;
 
-    Bodies(const PreparedScene<End>& scene, Judge<End>& judge) : scene_(scene), judge_(judge) {}
+    // `plain`: with which to leave out what plain doubles exclude, or none.
+    Bodies(const PreparedScene<End>& scene, Judge<End>& judge, const PlainScene* plain)
+        : scene_(scene), judge_(judge), plain_(plain) {}
 
-    // The first place beyond the ray's start; whether there is one.
-    bool meet(int index, const R& ray, Met<End>& met) {
+    // The first place beyond the ray's start; whether there is one. `narrow`: the ray in plain doubles.
+    bool meet(int index, const R& ray, const PlainRay& narrow, Met<End>& met) {
         const Body& body = scene_.scene.bodies[static_cast<std::size_t>(index)];
         if (body.program.empty()) {
             const Leaf& leaf = scene_.scene.leaves[body.leaves[0]];
@@ -99,16 +103,16 @@ class Bodies {
                 return false;  // they are convex
             }
             if (own && surface(leaf.first).kind == Kind::plane) {
-                return leave(index, leaf, ray, met);
+                return leave(index, leaf, ray, narrow, met);
             }
-            const Passage<End> passage = pass(leaf, ray, own);
+            const Passage<End> passage = pass(leaf, ray, narrow, own);
             if (passage.count == 0) {
                 return false;
             }
             met = {passage.crossings[0].t, index, passage.crossings[0].surface, passage.inside, passage.inside};
             return true;
         }
-        return meet_csg(index, body, ray, met);
+        return meet_csg(index, body, ray, narrow, met);
     }
 
     // What another kind of intervals has found of this ray, with its own place. Throws Undecided.
@@ -179,16 +183,23 @@ class Bodies {
         return (ray.from_eye && s.eye) || (ray.surface >= 0 && surface(ray.surface).identity == s.identity);
     }
 
+    // It starts or ends there by rule, whatever the numbers say.
+    bool touches(const S& s, const R& ray) const { return starts_on(s, ray) || ends_on(s, ray); }
+
     bool ends_on(const S& s, const R& ray) const {
         return ray.to_light >= 0 && (*s.lights)[static_cast<std::size_t>(ray.to_light)];
     }
 
-    Passage<End> pass(const Leaf& leaf, const R& ray, bool own) {
+    Passage<End> pass(const Leaf& leaf, const R& ray, const PlainRay& narrow, bool own) {
         switch (surface(leaf.first).kind) {
             case Kind::sphere:
+                if (plain_ != nullptr && !own && plain_->spheres[leaf.first].is_missed(narrow) &&
+                    !touches(surface(leaf.first), ray)) {
+                    return {};
+                }
                 return pass_sphere(static_cast<int>(leaf.first), ray, own);
             case Kind::plane:
-                return pass_planes(leaf, ray);
+                return pass_planes(leaf, ray, narrow);
             case Kind::quadric:
                 break;
         }
@@ -397,9 +408,22 @@ class Bodies {
         return sign;
     }
 
-    Passage<End> pass_planes(const Leaf& leaf, const R& ray) {
+    // Those of a polyhedron that matter, in their order; false: the ray certainly misses it.
+    bool sift(const Leaf& leaf, const PlainRay& narrow, bool entries) {
+        if (plain_ != nullptr) {
+            return plain_->planes[leaf.first].sift(narrow, entries, sieve_);
+        }
+        sieve_.left.resize(leaf.count);
+        std::iota(sieve_.left.begin(), sieve_.left.end(), std::size_t(0));
+        return true;
+    }
+
+    Passage<End> pass_planes(const Leaf& leaf, const R& ray, const PlainRay& narrow) {
+        if (!sift(leaf, narrow, true)) {
+            return {};
+        }
         Extreme enters{1}, leaves{-1};
-        for (std::size_t k = 0; k < leaf.count; ++k) {
+        for (const std::size_t k : sieve_.left) {
             const int index = static_cast<int>(leaf.first + k);
             I t;
             int side;
@@ -440,9 +464,10 @@ class Bodies {
     }
 
     // From a face inward, or a plate's other side.
-    bool leave(int index, const Leaf& leaf, const R& ray, Met<End>& met) {
+    bool leave(int index, const Leaf& leaf, const R& ray, const PlainRay& narrow, Met<End>& met) {
+        sift(leaf, narrow, false);
         Extreme leaves{-1};
-        for (std::size_t k = 0; k < leaf.count; ++k) {
+        for (const std::size_t k : sieve_.left) {
             const int plane = static_cast<int>(leaf.first + k);
             if (plane == ray.surface) {
                 continue;
@@ -481,13 +506,13 @@ class Bodies {
         bool sure;         // which surface it is
     };
 
-    bool meet_csg(int index, const Body& body, const R& ray, Met<End>& met) {
+    bool meet_csg(int index, const Body& body, const R& ray, const PlainRay& narrow, Met<End>& met) {
         std::uint64_t bits = 0;
         std::vector<Event>& events = events_;
         events.clear();
         for (std::size_t k = 0; k < body.leaves.size(); ++k) {
             second_sure_ = true;
-            const Passage<End> passage = pass(scene_.scene.leaves[body.leaves[k]], ray, false);
+            const Passage<End> passage = pass(scene_.scene.leaves[body.leaves[k]], ray, narrow, false);
             bits |= std::uint64_t(passage.inside) << k;
             for (int i = 0; i < passage.count; ++i) {
                 events.push_back(
@@ -551,6 +576,8 @@ class Bodies {
 
     const PreparedScene<End>& scene_;
     Judge<End>& judge_;
+    const PlainScene* plain_;
+    PlainPlanes::Sieve sieve_;
     std::vector<Event> events_;
     bool second_sure_ = true;
 };

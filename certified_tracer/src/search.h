@@ -45,9 +45,10 @@ class Search {
     using R = Ray<End>;
     static constexpr bool wide = !std::is_same_v<End, double>;
 
-    // `quick`: one in doubles, for a search with more digits, or none.
-    Search(const PreparedScene<End>& scene, const Tree& tree, Judge<End>& judge, Search<double>* quick)
-        : tree_(tree), judge_(judge), bodies_(scene, judge), quick_(quick) {}
+    // `plain`: for tests before those with intervals. `quick`: one in doubles, for a search with more digits. Or none.
+    Search(const PreparedScene<End>& scene, const Tree& tree, Judge<End>& judge, const PlainScene* plain,
+           Search<double>* quick)
+        : tree_(tree), judge_(judge), bodies_(scene, judge, plain), quick_(quick) {}
 
     const Bodies<End>& bodies() const { return bodies_; }
 
@@ -88,11 +89,12 @@ class Search {
         std::optional<Undecided> unknown;
         double unknown_from = std::numeric_limits<double>::infinity();
         double reach = unknown_from;
-        const Ray<double>& narrow = in_doubles(ray);
+        const Ray<double>& in_double = in_doubles(ray);
+        const PlainRay narrow(in_double.origin, in_double.direction);
         const auto visit = [&](int body, double near) {
             Met<End> met;
             try {
-                if (misses(body, narrow) || !bodies_.meet(body, ray, met)) {
+                if (misses(body, in_double, narrow) || !bodies_.meet(body, ray, narrow, met)) {
                     return;
                 }
                 if (found) {
@@ -112,7 +114,7 @@ class Search {
             best = met;
             reach = best.t.high_double();
         };
-        tree_.search(Slabs(narrow.origin, narrow.direction), visit, [&] { return reach; });
+        tree_.search(narrow, visit, [&] { return reach; });
         if (unknown && unknown_from <= reach) {
             throw *unknown;
         }
@@ -122,14 +124,15 @@ class Search {
     bool any_in_the_way(const R& ray) {
         bool blocked = false;
         std::optional<Undecided> unknown;
-        const Ray<double>& narrow = in_doubles(ray);
+        const Ray<double>& in_double = in_doubles(ray);
+        const PlainRay narrow(in_double.origin, in_double.direction);
         const auto visit = [&](int body, double) {
             if (blocked) {
                 return;
             }
             try {
                 Met<End> met;
-                if (!misses(body, narrow) && bodies_.meet(body, ray, met) &&
+                if (!misses(body, in_double, narrow) && bodies_.meet(body, ray, narrow, met) &&
                     judge_.sign(met.t - Interval<End>(1), Reason::shadow) < 0) {
                     blocked = true;
                 }
@@ -137,7 +140,7 @@ class Search {
                 unknown = undecided;
             }
         };
-        tree_.search(Slabs(narrow.origin, narrow.direction), visit, [&] { return blocked ? -1.0 : 1.0; });
+        tree_.search(narrow, visit, [&] { return blocked ? -1.0 : 1.0; });
         if (!blocked && unknown) {
             throw *unknown;
         }
@@ -145,12 +148,13 @@ class Search {
     }
 
     // Whether doubles tell already that a ray with more digits does not meet a body.
-    bool misses(int body, const Ray<double>& narrow) {
+    bool misses([[maybe_unused]] int body, [[maybe_unused]] const Ray<double>& ray,
+                [[maybe_unused]] const PlainRay& narrow) {
         if constexpr (wide) {
             if (quick_ != nullptr) {
                 try {
                     Met<double> met;
-                    return !quick_->bodies_.meet(body, narrow, met);
+                    return !quick_->bodies_.meet(body, ray, narrow, met);
                 } catch (const Undecided&) {
                 }
             }

@@ -20,12 +20,13 @@ class Tracer {
     using V = Vector<I>;
     using R = Ray<End>;
 
-    // `quick`: one in doubles, to which a tracer with more digits leaves what doubles decide, or none.
-    Tracer(const PreparedScene<End>& scene, const Tree& tree, bool last, Tracer<double>* quick)
+    // `plain`: for tests before those with intervals. `quick`: one in doubles, to which a tracer with more digits
+    // leaves what doubles decide. Or none.
+    Tracer(const PreparedScene<End>& scene, const Tree& tree, bool last, const PlainScene* plain, Tracer<double>* quick)
         : scene_(scene),
           judge_(last),
           quick_(quick),
-          search_(scene, tree, judge_, quick == nullptr ? nullptr : &quick->search_),
+          search_(scene, tree, judge_, plain, quick == nullptr ? nullptr : &quick->search_),
           shading_(scene, search_, judge_) {}
 
     // Parts refer to each other.

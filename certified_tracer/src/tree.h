@@ -9,29 +9,10 @@
 #include <numeric>
 #include <vector>
 
-#include "interval.h"
-#include "prepared.h"
+#include "plain.h"
 #include "scene.h"
 
 namespace certified {
-
-// What a ray's tests against boxes share.
-struct Slabs {
-    using Axes = Vector<Interval<double>>;
-
-    Slabs(const Axes& start, const Axes& way) : origin{start.x, start.y, start.z}, direction{way.x, way.y, way.z} {
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const Interval<double>& d = direction[axis];
-            sign[axis] = d.positive() ? 1 : d.negative() ? -1 : 0;
-            if (sign[axis] != 0) {
-                inverse[axis] = Interval<double>(1) / d;
-            }
-        }
-    }
-
-    std::array<Interval<double>, 3> origin, direction, inverse;
-    std::array<int, 3> sign;  // of the direction's coordinates; 0 where it is not certain
-};
 
 class Tree {
  public:
@@ -55,7 +36,7 @@ class Tree {
 
     // Calls visit(body, near) for every body that the ray may meet before `reach()`; near: not before that distance.
     template <typename Visit, typename Reach>
-    void search(const Slabs& ray, const Visit& visit, const Reach& reach) const {
+    void search(const PlainRay& ray, const Visit& visit, const Reach& reach) const {
         for (const int body : boundless_) {
             visit(body, 0.0);
         }
@@ -68,7 +49,7 @@ class Tree {
         while (depth >= 0) {
             const Node& node = nodes_[static_cast<std::size_t>(stack[static_cast<std::size_t>(depth--)])];
             double near;
-            if (!may_meet(ray, node.box, reach(), near)) {
+            if (!may_meet(ray, node.box.low, node.box.high, reach(), near)) {
                 continue;
             }
             if (node.body >= 0) {
@@ -124,28 +105,6 @@ class Tree {
         }
         nodes_[static_cast<std::size_t>(index)] = {box, body, second, left_size};
         return index;
-    }
-
-    // Slabs; where a direction's sign is not certain, that axis excludes nothing.
-    static bool may_meet(const Slabs& ray, const Box& box, double reach, double& near) {
-        double leave = reach;
-        near = 0;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const int sign = ray.sign[axis];
-            if (sign == 0) {
-                const Interval<double>& d = ray.direction[axis];
-                if (d.is_zero() &&
-                    (ray.origin[axis].high() < box.low[axis] || ray.origin[axis].low() > box.high[axis])) {
-                    return false;
-                }
-                continue;
-            }
-            const double entry = sign > 0 ? box.low[axis] : box.high[axis];
-            const double exit = sign > 0 ? box.high[axis] : box.low[axis];
-            near = std::max(near, ((Interval<double>(entry) - ray.origin[axis]) * ray.inverse[axis]).low());
-            leave = std::min(leave, ((Interval<double>(exit) - ray.origin[axis]) * ray.inverse[axis]).high());
-        }
-        return !(near > leave);
     }
 
     std::vector<Box> boxes_;
