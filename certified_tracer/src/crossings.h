@@ -5,6 +5,7 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
 #include <numeric>
 #include <vector>
 
@@ -93,8 +94,9 @@ class Bodies {
     Bodies(const PreparedScene<End>& scene, Judge<End>& judge, const PlainScene* plain)
         : scene_(scene), judge_(judge), plain_(plain) {}
 
-    // The first place beyond the ray's start; whether there is one. `narrow`: the ray in plain doubles.
-    bool meet(int index, const R& ray, const PlainRay& narrow, Met<End>& met) {
+    // The first place beyond the ray's start; whether there is one. `narrow`: the ray in plain doubles;
+    // what is certainly not met before `end` may count as missed.
+    bool meet(int index, const R& ray, const PlainRay& narrow, double end, Met<End>& met) {
         const Body& body = scene_.scene.bodies[static_cast<std::size_t>(index)];
         if (body.program.empty()) {
             const Leaf& leaf = scene_.scene.leaves[body.leaves[0]];
@@ -105,7 +107,7 @@ class Bodies {
             if (own && surface(leaf.first).kind == Kind::plane) {
                 return leave(index, leaf, ray, narrow, met);
             }
-            const Passage<End> passage = pass(leaf, ray, narrow, own);
+            const Passage<End> passage = pass(leaf, ray, narrow, end, own);
             if (passage.count == 0) {
                 return false;
             }
@@ -190,16 +192,16 @@ class Bodies {
         return ray.to_light >= 0 && (*s.lights)[static_cast<std::size_t>(ray.to_light)];
     }
 
-    Passage<End> pass(const Leaf& leaf, const R& ray, const PlainRay& narrow, bool own) {
+    Passage<End> pass(const Leaf& leaf, const R& ray, const PlainRay& narrow, double end, bool own) {
         switch (surface(leaf.first).kind) {
             case Kind::sphere:
-                if (plain_ != nullptr && !own && plain_->spheres[leaf.first].is_missed(narrow) &&
+                if (plain_ != nullptr && !own && plain_->spheres[leaf.first].is_missed(narrow, end) &&
                     !touches(surface(leaf.first), ray)) {
                     return {};
                 }
                 return pass_sphere(static_cast<int>(leaf.first), ray, own);
             case Kind::plane:
-                return pass_planes(leaf, ray, narrow);
+                return pass_planes(leaf, ray, narrow, end);
             case Kind::quadric:
                 break;
         }
@@ -409,17 +411,17 @@ class Bodies {
     }
 
     // Those of a polyhedron that matter, in their order; false: the ray certainly misses it.
-    bool sift(const Leaf& leaf, const PlainRay& narrow, bool entries) {
+    bool sift(const Leaf& leaf, const PlainRay& narrow, double end, bool entries) {
         if (plain_ != nullptr) {
-            return plain_->planes[leaf.first].sift(narrow, entries, sieve_);
+            return plain_->planes[leaf.first].sift(narrow, end, entries, sieve_);
         }
         sieve_.left.resize(leaf.count);
         std::iota(sieve_.left.begin(), sieve_.left.end(), std::size_t(0));
         return true;
     }
 
-    Passage<End> pass_planes(const Leaf& leaf, const R& ray, const PlainRay& narrow) {
-        if (!sift(leaf, narrow, true)) {
+    Passage<End> pass_planes(const Leaf& leaf, const R& ray, const PlainRay& narrow, double end) {
+        if (!sift(leaf, narrow, end, true)) {
             return {};
         }
         Extreme enters{1}, leaves{-1};
@@ -465,7 +467,7 @@ class Bodies {
 
     // From a face inward, or a plate's other side.
     bool leave(int index, const Leaf& leaf, const R& ray, const PlainRay& narrow, Met<End>& met) {
-        sift(leaf, narrow, false);
+        sift(leaf, narrow, infinite, false);
         Extreme leaves{-1};
         for (const std::size_t k : sieve_.left) {
             const int plane = static_cast<int>(leaf.first + k);
@@ -512,7 +514,7 @@ class Bodies {
         events.clear();
         for (std::size_t k = 0; k < body.leaves.size(); ++k) {
             second_sure_ = true;
-            const Passage<End> passage = pass(scene_.scene.leaves[body.leaves[k]], ray, narrow, false);
+            const Passage<End> passage = pass(scene_.scene.leaves[body.leaves[k]], ray, narrow, infinite, false);
             bits |= std::uint64_t(passage.inside) << k;
             for (int i = 0; i < passage.count; ++i) {
                 events.push_back(
@@ -573,6 +575,8 @@ class Bodies {
         }
         return stack & 1;
     }
+
+    static constexpr double infinite = std::numeric_limits<double>::infinity();
 
     const PreparedScene<End>& scene_;
     Judge<End>& judge_;

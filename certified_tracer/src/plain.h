@@ -96,15 +96,20 @@ inline bool may_meet(const PlainRay& ray, const std::array<double, 3>& low, cons
 class PlainSphere {
  public:
     PlainSphere(const Vector<Interval<double>>& center, const Interval<double>& radius)
-        : center_(center), radius_(radius.high()) {}
+        : center_(center), least_radius_(radius.low()), radius_(radius.high()) {}
 
-    // Certainly: the ray passes beside it, or it lies behind the start, which is outside.
-    bool is_missed(const PlainRay& ray) const {
+    // Certainly: the ray passes beside it, or it lies behind the start, which is outside, or the ray does not come to
+    // it before `end`.
+    bool is_missed(const PlainRay& ray, double end) const {
         const Plain &o = ray.origin, &d = ray.direction;
         const double x = o.x - center_.x, y = o.y - center_.y, z = o.z - center_.z;
         const double arm2 = x * x + y * y + z * z, arm = std::sqrt(arm2 + tiny);
         const double off = o.off + center_.off + 2 * rounding * arm + tiny, far = arm + off;
         const double u = y * d.z - z * d.y, v = z * d.x - x * d.z, w = x * d.y - y * d.x;
+        const double way = end * (ray.speed + d.off);
+        if (least_radius_ > far + way || arm > radius_ + off + 8 * rounding * arm + way) {
+            return true;
+        }
         // How far their product may be off, be it the dot or the cross product; and how long they are.
         const double speed = ray.speed + d.off;
         const double miss = off * speed + far * d.off + 8 * rounding * far * speed + tiny, size = far * speed + miss;
@@ -118,7 +123,7 @@ class PlainSphere {
 
  private:
     Plain center_;
-    double radius_;  // not below it
+    double least_radius_, radius_;  // it lies between these
 };
 
 // The planes of a polyhedron, by twos.
@@ -151,8 +156,9 @@ class PlainPlanes {
     };
 
     // Leaves those planes that may be the last by which the ray enters, if `entries`, or the first by which it leaves,
-    // and those along which it may run. False: it certainly passes beside, or behind its start.
-    bool sift(const PlainRay& ray, bool entries, Sieve& sieve) const {
+    // and those along which it may run. False: it certainly passes beside, enters after `end`, or left before its
+    // start.
+    bool sift(const PlainRay& ray, double end, bool entries, Sieve& sieve) const {
         const Plain &o = ray.origin, &d = ray.direction;
         const double height_off = 1.01 * o.off + normals_off_ * ray.reach + offsets_off_ +
                                   8 * rounding * (ray.reach + largest_offset_) + tiny;
@@ -184,7 +190,7 @@ class PlainPlanes {
             std::memcpy(&sieve.exit_low[2 * i], &exit_low, sizeof(Two));
         }
         const double entry = std::max(last_entry[0], last_entry[1]), exit = std::min(first_exit[0], first_exit[1]);
-        if (entries && (exit < 0 || exit < entry)) {
+        if (entries && (exit < 0 || entry > std::min(exit, end))) {
             return false;
         }
         sieve.left.clear();

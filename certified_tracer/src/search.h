@@ -94,7 +94,7 @@ class Search {
         const auto visit = [&](int body, double near) {
             Met<End> met;
             try {
-                if (misses(body, in_double, narrow) || !bodies_.meet(body, ray, narrow, met)) {
+                if (misses(body, in_double, narrow, reach) || !bodies_.meet(body, ray, narrow, reach, met)) {
                     return;
                 }
                 if (found) {
@@ -132,7 +132,7 @@ class Search {
             }
             try {
                 Met<End> met;
-                if (!misses(body, in_double, narrow) && bodies_.meet(body, ray, narrow, met) &&
+                if (!misses(body, in_double, narrow, 1) && bodies_.meet(body, ray, narrow, 1, met) &&
                     judge_.sign(met.t - Interval<End>(1), Reason::shadow) < 0) {
                     blocked = true;
                 }
@@ -149,12 +149,12 @@ class Search {
 
     // Whether doubles tell already that a ray with more digits does not meet a body.
     bool misses([[maybe_unused]] int body, [[maybe_unused]] const Ray<double>& ray,
-                [[maybe_unused]] const PlainRay& narrow) {
+                [[maybe_unused]] const PlainRay& narrow, [[maybe_unused]] double end) {
         if constexpr (wide) {
             if (quick_ != nullptr) {
                 try {
                     Met<double> met;
-                    return !quick_->bodies_.meet(body, ray, narrow, met);
+                    return !quick_->bodies_.meet(body, ray, narrow, end, met);
                 } catch (const Undecided&) {
                 }
             }
