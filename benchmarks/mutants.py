@@ -44,7 +44,7 @@ def copy_project() -> None:
 
 
 def build() -> bool:
-    """Build the native module of the copy, if it is not what it was made from; whether it compiles."""
+    """Build the modules of the copy, if they are not what they were made from; whether they compile."""
     scripts, out = Path(sys.executable).parent, FOLDER / "build"
     if not (out / "build.ninja").exists():
         configure = [scripts / "cmake", "-S", TREE, "-B", out, "-G", "Ninja", f"-Dnanobind_DIR={nanobind.cmake_dir()}"]
@@ -53,8 +53,9 @@ def build() -> bool:
         subprocess.run(configure, check=True, stdout=subprocess.DEVNULL)
     if subprocess.run([scripts / "cmake", "--build", out], stdout=subprocess.DEVNULL).returncode:
         return False
-    (module,) = out.glob("_core.*.so")
-    shutil.copy(module, TREE / "native_tracer")
+    for name, folder in (("_core", "native_tracer"), ("_certified", "certified_tracer")):
+        (module,) = out.glob(f"{name}.*.so")
+        shutil.copy(module, TREE / folder)
     return True
 
 

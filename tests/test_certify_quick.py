@@ -30,11 +30,10 @@ def _exactly(values: Sequence[float]) -> list[Number]:
 
 
 def _about(rng: random.Random, values: Sequence[float], width: float, toward: Sequence[float]) -> list[Number]:
-    """Numbers that hold the true values, and have their middles off toward a side."""
-    length = math.hypot(*toward) or 1.0
+    """Numbers that hold the true values, and have their middles as far off toward a side as they can."""
     if width == 0:
         return _exactly(values)
-    shares = [0.9 * rng.choice((1.0, -1.0, t / length)) * width for t in toward]
+    shares = [math.copysign(rng.choice((0.5, 0.99)) * width, t) for t in toward]
     return [([x + share], width) for x, share in zip(values, shares, strict=True)]
 
 
@@ -75,9 +74,15 @@ def test_a_ball_that_a_ray_touches_is_not_missed(width: float, far: float) -> No
         closest = _dot(arm, arm) - _dot(arm, d) ** 2 / _dot(d, d)
         radius = _root(closest)
         beside = [float(a - x * _dot(arm, d) / _dot(d, d)) for a, x in zip(arm, d, strict=True)]
-        asked = (_about(rng, origin, width, beside), _about(rng, direction, width, beside))
-        assert not misses_ball(_exactly(center), ([radius], 0.0), *asked, math.inf)
-        assert not misses_ball(_about(rng, center, width, [-x for x in beside]), ([radius], 0.0), *asked, math.inf)
+        given = [_exactly(center), _exactly(origin), _exactly(direction)]
+        about = [
+            _about(rng, center, width, [-x for x in beside]),
+            *(_about(rng, x, width, beside) for x in (origin, direction)),
+        ]
+        for k in range(3):  # one of them is known but roughly
+            center_, *ray = [about[i] if i == k else given[i] for i in range(3)]
+            assert not misses_ball(center_, ([radius], 0.0), *ray, math.inf)
+        asked = about[1:]
         if (smaller := radius - (1e-12 + 1e3 * width) * far) > 0 and math.hypot(*direction) > 0.3:
             judged += 1
             assert misses_ball(_exactly(center), ([smaller], 0.0), *asked, math.inf)
@@ -213,7 +218,8 @@ def test_an_axis_along_which_nothing_moves() -> None:
 
 
 @pytest.mark.parametrize(
-    "name", ["arcade", "brilliant", "dice", "figure1", "infinity", "nested", "prisms", "quadrics", "solids", "wine_glass"]
+    "name",
+    ["arcade", "brilliant", "dice", "figure1", "infinity", "nested", "prisms", "quadrics", "solids", "wine_glass"],
 )
 @pytest.mark.parametrize("rung", [0, 1])
 def test_pixels_are_those_of_intervals_alone(name: str, rung: int) -> None:
@@ -228,4 +234,3 @@ def test_pixels_are_those_of_intervals_alone(name: str, rung: int) -> None:
     assert (quick["low"][decided] == readable["low"][decided]).all()
     assert (quick["high"][decided] == readable["high"][decided]).all()
     assert decided.mean() > 0.5
-

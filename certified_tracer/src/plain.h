@@ -160,9 +160,10 @@ class PlainPlanes {
     // start.
     bool sift(const PlainRay& ray, double end, bool entries, Sieve& sieve) const {
         const Plain &o = ray.origin, &d = ray.direction;
-        const double height_off = 1.01 * o.off + normals_off_ * ray.reach + offsets_off_ +
-                                  8 * rounding * (ray.reach + largest_offset_) + tiny;
-        const double slope_off = 1.01 * d.off + normals_off_ * ray.speed + 8 * rounding * ray.speed + tiny;
+        // Normals are of length 1.
+        const double height_off =
+            o.off + normals_off_ * ray.reach + offsets_off_ + 8 * rounding * (ray.reach + largest_offset_) + tiny;
+        const double slope_off = d.off + normals_off_ * ray.speed + 8 * rounding * ray.speed + tiny;
         const Two none = {-infinite, -infinite};
         Two last_entry = none, first_exit = -none;
         sieve.entry_high.resize(2 * pairs_.size());
