@@ -201,7 +201,7 @@ def test_a_box_that_a_ray_grazes_is_not_missed(width: float) -> None:
             hits += 1
             assert near is not None and near <= enter
         end = float(enter) * (1 - 1e-9) - 1000 * width
-        if width < 1e-9 and 0 < end and min(map(abs, direction)) > 0.01:
+        if width < 1e-9 and end > 0 and min(map(abs, direction)) > 0.01:
             assert meets_box(low, high, _exactly(origin), _exactly(direction), end) is None
     assert hits > 100
 
