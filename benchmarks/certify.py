@@ -1,9 +1,10 @@
-"""Prints the table of the README on certified pixels: seconds, what is undecided and why, and what methods get wrong.
+"""Prints the table of docs/certify.md: seconds, and those of processors, what is undecided and why, what methods get wrong.
 
 .venv/bin/python benchmarks/certify.py [--size W H] [--methods NAME,...] [SCENE...]
 """
 
 import argparse
+import time
 from pathlib import Path
 
 import numpy as np
@@ -27,15 +28,23 @@ def main() -> None:
     arguments = parser.parse_args()
     width, height = arguments.size
     settings = Settings(width=width, height=height)
-    names = arguments.methods.split(",")
-    columns = ["", "seconds", "128 digits", "256", "512", "by ties", "undecided", *names]
+    names = [name for name in arguments.methods.split(",") if name]
+    columns = ["", "seconds", "of processors", "128 digits", "256", "512", "by ties", "undecided", *names]
     print("| " + " | ".join(columns) + " |\n" + "|---" * len(columns) + "|")
     for file in arguments.scenes or sorted(SCENES.glob("*.in")):
         scene = load_scene(file)
+        started = time.process_time()
         certificate = certify(scene, settings)
+        used = time.process_time() - started
         rungs = np.bincount(certificate.rung.ravel(), minlength=len(certificate.digits))
         undecided = ", ".join(f"{name} {count}" for name, count in certificate.counts().items()) or "0"
-        row = [file.stem, f"{certificate.seconds['certify']:.1f}", *map(str, rungs[1:]), str(certificate.tied.sum())]
+        row = [
+            file.stem,
+            f"{sum(certificate.seconds.values()):.1f}",
+            f"{used:.1f}",
+            *map(str, rungs[1:]),
+            str(certificate.tied.sum()),
+        ]
         row.append(undecided)
         for name in names:
             try:

@@ -47,7 +47,7 @@ class Interval<double> {
             return by_other(x, y);
         }
         const double low = y.low(), high = y.high();
-        return x.ends_ / (x.ends_ > 0 ? Ends{low, low} : Ends{high, high});
+        return x.ends_ / (x.ends_ > Ends{} ? Ends{low, low} : Ends{high, high});
     }
 
     // Of what is not negative, as far as it is not.

@@ -171,8 +171,8 @@ class PlainPlanes {
         for (std::size_t i = 0; i < pairs_.size(); ++i) {
             const Pair& p = pairs_[i];
             const Two slope = p.x * d.x + p.y * d.y + p.z * d.z, height = p.x * o.x + p.y * o.y + p.z * o.z + p.offset;
-            const auto certain = size(slope) > 2 * slope_off, enters = certain & (slope < 0),
-                       leaves = certain & (slope > 0);
+            const auto certain = size(slope) > 2 * slope_off, enters = certain & (slope < Two{}),
+                       leaves = certain & (slope > Two{});
             // A divisor that is not 0, which a compiler does not make a choice between quotients.
             const Two inverse = 1 / (slope + (certain ? Two{} : Two{} + 4 * slope_off)), t = -height * inverse;
             // The divisor may be half of it.
@@ -207,7 +207,7 @@ class PlainPlanes {
     using Two = double __attribute__((vector_size(16)));
     static constexpr double infinite = std::numeric_limits<double>::infinity();
 
-    static Two size(const Two& x) { return x < 0 ? -x : x; }
+    static Two size(const Two& x) { return x < Two{} ? -x : x; }
 
     struct Pair {
         Two x{}, y{}, z{}, offset{};
