@@ -1,4 +1,4 @@
-"""Prints the table of docs/certify.md: seconds, and those of processors, what is undecided and why, what methods get wrong.
+"""Prints the table of docs/certify.md: seconds, also of processors, what is undecided and why, what methods get wrong.
 
 .venv/bin/python benchmarks/certify.py [--size W H] [--methods NAME,...] [SCENE...]
 """
