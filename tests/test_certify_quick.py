@@ -117,7 +117,7 @@ def test_a_ball_is_met_where_its_surface_is_nearest(width: float) -> None:
         radius = _root(_dot(place, place))
         end = float(abs(share)) * (1 + 1e-13) + (1e-13 if within else 0) + 1e-15
         way = direction if within else [-x for x in direction]
-        asked = (_about(rng, origin, width, way), _about(rng, way, width, way))
+        asked = (_about(rng, origin, width, [-x for x in way]), _exactly(way))
         assert not misses_ball(_exactly(center), ([radius], 0.0), *asked, end)
         assert misses_ball(_exactly(center), ([radius], 0.0), *asked, end * (1 - 1e-9) - 100 * width)
 
@@ -151,7 +151,8 @@ def test_planes_where_a_ray_enters_or_leaves_are_left(width: float, far: float) 
             exact.append((-(_dot(n, o) + offset) / slope, slope))
         entry = max((t for t, slope in exact if slope < 0), default=None)
         exit_ = min((t for t, slope in exact if slope > 0), default=None)
-        asked = (_about(rng, origin, width, direction), _about(rng, direction, width, origin))
+        start, way = rng.choice(((width, 0.0), (0.0, width)))
+        asked = (_about(rng, origin, start, _random(rng)), _about(rng, direction, way, _random(rng)))
         end = rng.choice((math.inf, enters))
         left = sift([_exactly(plane) for plane in planes], *asked, True, end)
         missed = exit_ is not None and (exit_ < 0 or (entry is not None and exit_ < entry))
