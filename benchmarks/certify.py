@@ -1,4 +1,4 @@
-"""Prints the table of docs/certify.md: seconds, also of processors, what is undecided and why, what methods get wrong.
+"""Prints the table of docs/certify.md: seconds of processors, what is undecided and why, what methods get wrong.
 
 .venv/bin/python benchmarks/certify.py [--size W H] [--methods NAME,...] [SCENE...]
 """
@@ -29,7 +29,7 @@ def main() -> None:
     width, height = arguments.size
     settings = Settings(width=width, height=height)
     names = [name for name in arguments.methods.split(",") if name]
-    columns = ["", "seconds", "of processors", "128 digits", "256", "512", "by ties", "undecided", *names]
+    columns = ["", "seconds", "128 digits", "256", "512", "by ties", "undecided", *names]
     print("| " + " | ".join(columns) + " |\n" + "|---" * len(columns) + "|")
     for file in arguments.scenes or sorted(SCENES.glob("*.in")):
         scene = load_scene(file)
