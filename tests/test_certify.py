@@ -68,6 +68,37 @@ def test_enclosures_hold_the_truth(seed: int) -> None:
             _check("power", [share, 20.0], Decimal(repr(share)) ** 20, 12)
 
 
+@pytest.mark.parametrize("seed", range(2))
+def test_wide_intervals_hold_all_that_their_numbers_give(seed: int) -> None:
+    """Their ends come from ends, whatever their signs."""
+    rng = random.Random(seed)
+    operations = {"+": Fraction.__add__, "-": Fraction.__sub__, "*": Fraction.__mul__, "/": Fraction.__truediv__}
+    for _ in range(100):
+        (x, a), (y, b) = [(rng.choice((-1, 1)) * rng.uniform(0, 2), rng.uniform(0, 1)) for _ in range(2)]
+        for name, operation in operations.items():
+            if name == "/" and abs(y) <= b:
+                continue
+            results = [
+                operation(Fraction(x) + i * Fraction(a), Fraction(y) + j * Fraction(b))
+                for i in (-1, 1)
+                for j in (-1, 1)
+            ]
+            _holds(name, [([x], a), ([y], b)], min(results), max(results))
+        ends = sorted(((Fraction(x) - Fraction(a)) ** 2, (Fraction(x) + Fraction(a)) ** 2))
+        for rung in RUNGS:
+            root = certified_tracer.miss("sqrt", [([abs(x)], 0.0)], ([0.0], 0.0), rung)
+            assert Fraction(root[0]) ** 2 <= Fraction(abs(x)) <= Fraction(root[1]) ** 2
+        _holds("square", [([x], a)], Fraction(0) if abs(x) <= a else ends[0], ends[1])
+
+
+def _holds(function: str, arguments: list[tuple[list[float], float]], low: Fraction, high: Fraction) -> None:
+    """The interval has both ends, and not much more."""
+    for rung in RUNGS:
+        found = certified_tracer.miss(function, arguments, ([0.0], 0.0), rung)
+        assert Fraction(found[0]) <= low and high <= Fraction(found[1]), (function, arguments, rung)
+        assert Fraction(found[1]) - Fraction(found[0]) <= (high - low) * Fraction(1001, 1000) + Fraction(1, 10**9)
+
+
 @pytest.mark.parametrize("degrees", [0.5, 32.0, 45.3, 90.0, 120.7, 179.0])
 def test_tangent_of_half_an_angle(degrees: float) -> None:
     numbers = Decimals()

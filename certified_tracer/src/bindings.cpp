@@ -2,22 +2,15 @@
 
 #include <nanobind/nanobind.h>
 #include <nanobind/ndarray.h>
-#include <nanobind/stl/array.h>
-#include <nanobind/stl/pair.h>
-#include <nanobind/stl/string.h>
-#include <nanobind/stl/vector.h>
 
 #include <cstddef>
 #include <stdexcept>
-#include <string>
 #include <utility>
 #include <vector>
 
 #include "certify.h"
-#include "elementary.h"
-#include "prepared.h"
+#include "given.h"
 #include "scene.h"
-#include "upward.h"
 
 namespace nb = nanobind;
 using namespace nb::literals;
@@ -25,35 +18,8 @@ using namespace certified;
 
 namespace {
 
-using Given = std::pair<std::vector<double>, double>;
-using GivenTriple = std::array<Given, 3>;
-using GivenFour = std::array<Given, 4>;
 using Texels = nb::ndarray<const std::uint16_t, nb::shape<-1, -1, 3>, nb::c_contig, nb::device::cpu>;
 using Pixels = nb::ndarray<const std::int32_t, nb::shape<-1, 2>, nb::c_contig, nb::device::cpu>;
-
-Number number(const Given& given) {
-    if (given.first.empty()) {
-        throw std::invalid_argument("a number has a double at least");
-    }
-    return {given.first, given.second};
-}
-
-template <std::size_t count>
-std::array<Number, count> numbers(const std::array<Given, count>& given) {
-    std::array<Number, count> result;
-    for (std::size_t i = 0; i < count; ++i) {
-        result[i] = number(given[i]);
-    }
-    return result;
-}
-
-std::vector<Number> numbers(const std::vector<Given>& given) {
-    std::vector<Number> result;
-    for (const Given& one : given) {
-        result.push_back(number(one));
-    }
-    return result;
-}
 
 void check(const Scene& scene) {
     const auto below = [](int index, std::size_t size) { return index >= 0 && static_cast<std::size_t>(index) < size; };
@@ -80,8 +46,8 @@ auto owned(std::vector<Value>&& values, std::initializer_list<std::size_t> shape
     return nb::ndarray<nb::numpy, Value>(kept->data(), shape, owner);
 }
 
-nb::dict certify_pixels(const Scene& scene, const Pixels& pixels, int first, int last, int threads,
-                        nb::object progress) {
+nb::dict certify_pixels(const Scene& scene, const Pixels& pixels, int first, int last, int threads, nb::object progress,
+                        bool quick) {
     check(scene);
     const std::size_t count = pixels.shape(0);
     std::vector<std::array<int, 2>> places(count);
@@ -100,7 +66,7 @@ nb::dict certify_pixels(const Scene& scene, const Pixels& pixels, int first, int
     std::vector<Pixel> results;
     {
         const nb::gil_scoped_release unlocked;
-        results = certify(scene, places, first, last, threads, watch);
+        results = certify(scene, places, first, last, threads, quick, watch);
     }
     std::vector<std::uint8_t> low, high, reason, rung, tied;
     std::vector<double> color;
@@ -120,57 +86,6 @@ nb::dict certify_pixels(const Scene& scene, const Pixels& pixels, int first, int
     found["rung"] = owned(std::move(rung), {count});
     found["tied"] = owned(std::move(tied), {count});
     return found;
-}
-
-// ---- For tests --------------------------------------------------------------------------------------------------------
-
-template <typename End>
-std::pair<double, double> miss_of(const std::string& function, const std::vector<Number>& given, const Number& truth) {
-    using I = Interval<End>;
-    std::vector<I> x;
-    for (const Number& one : given) {
-        x.push_back(enclosed<End>(one));
-    }
-    I value;
-    if (function == "tan_half") {
-        value = tangent_of_half(x.at(0));
-    } else if (function == "exp") {
-        value = exp(x.at(0));
-    } else if (function == "log") {
-        value = log(x.at(0));
-    } else if (function == "power") {
-        value = power(x.at(0), x.at(1));
-    } else if (function == "sqrt") {
-        value = sqrt(x.at(0));
-    } else if (function == "square") {
-        value = square(x.at(0));
-    } else if (function == "+") {
-        value = x.at(0) + x.at(1);
-    } else if (function == "-") {
-        value = x.at(0) - x.at(1);
-    } else if (function == "*") {
-        value = x.at(0) * x.at(1);
-    } else if (function == "/") {
-        value = x.at(0) / x.at(1);
-    } else {
-        throw std::invalid_argument("there is no function " + function);
-    }
-    const I miss = value - enclosed<End>(truth);
-    return {miss.low_double(), miss.high_double()};
-}
-
-std::pair<double, double> miss(const std::string& function, const std::vector<Given>& given, const Given& truth,
-                               int rung) {
-    const std::vector<Number> arguments = numbers(given);
-    const Upward upward;
-    try {
-        return rung == 0   ? miss_of<double>(function, arguments, number(truth))
-               : rung == 1 ? miss_of<Wide<2>>(function, arguments, number(truth))
-               : rung == 2 ? miss_of<Wide<4>>(function, arguments, number(truth))
-                           : miss_of<Wide<8>>(function, arguments, number(truth));
-    } catch (const Undecided&) {
-        throw std::domain_error("undecided");
-    }
 }
 
 }  // namespace
@@ -294,11 +209,12 @@ NB_MODULE(_certified, module) {
                 scene.bodies.push_back({pigment, finish, leaves, program, low, high});
             },
             "pigment"_a, "finish"_a, "leaves"_a, "program"_a, "low"_a, "high"_a);
-    module.def("certify", &certify_pixels, "scene"_a, "pixels"_a, "first"_a, "last"_a, "threads"_a,
-               "progress"_a.none() = nb::none(),
-               "What is known of pixels (n, 2) int32, column and row, on some of the rungs: arrays by name.");
-    module.def("miss", &miss, "function"_a, "arguments"_a, "truth"_a, "rung"_a,
-               "Low and high end of what a function's interval, less its true value, comes to.");
+    module.def(
+        "certify", &certify_pixels, "scene"_a, "pixels"_a, "first"_a, "last"_a, "threads"_a,
+        "progress"_a.none() = nb::none(), "quick"_a = true,
+        "What is known of pixels (n, 2) int32, column and row, on some of the rungs: arrays by name. Not `quick`: "
+        "by their intervals alone.");
+    bind_tests(module);
     nb::list reasons;
     for (const char* name : reason_names) {
         reasons.append(name);

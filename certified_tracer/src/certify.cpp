@@ -36,18 +36,49 @@ bool settle(const I& channel, std::uint8_t& low, std::uint8_t& high) {
 }
 
 template <typename End>
+std::unique_ptr<PreparedScene<End>> prepared(const Scene& scene) {
+    std::feclearexcept(exceptions);
+    auto result = std::make_unique<PreparedScene<End>>(scene);
+    if (std::fetestexcept(exceptions) != 0) {
+        throw Undecided{Reason::range};
+    }
+    return result;
+}
+
+template <typename End>
 class Rung {
  public:
-    Rung(const Scene& scene, const Tree& tree, int number, bool last)
-        : prepared_(scene), tree_(tree), number_(number), last_(last) {}
+    // Throws Undecided where numbers are beyond those of a double.
+    Rung(const Scene& scene, const Tree& tree, int number, bool last, bool quick)
+        : prepared_(prepared<End>(scene)), tree_(tree), number_(number), last_(last) {
+        if (quick) {
+            try {
+                doubles_ = prepared<double>(scene);
+                plain_ = std::make_unique<PlainScene>(*doubles_);
+            } catch (const Undecided&) {  // this rung can do without
+            }
+        }
+    }
 
     // A thread's share: `next` gives the indices of pixels, as long as there are any.
     template <typename Next>
     void work(const std::vector<std::array<int, 2>>& pixels, std::vector<Pixel>& results, const Next& next) const {
         const Upward upward;
-        Tracer<End> tracer(prepared_, tree_, last_);
+        Tracer<End> thorough(*prepared_, tree_, last_, nullptr, nullptr);
+        if (!plain_) {
+            for (std::size_t i = 0; next(i);) {
+                results[i] = one(thorough, pixels[i]);
+            }
+            return;
+        }
+        Tracer<double> quick(*doubles_, tree_, false, plain_.get(), nullptr);
+        Tracer<End> tracer(*prepared_, tree_, last_, plain_.get(), &quick);
         for (std::size_t i = 0; next(i);) {
             results[i] = one(tracer, pixels[i]);
+            // Doubles may have left their range, or tell too little of a colour.
+            if (wide && (results[i].reason == Reason::range || results[i].reason == Reason::byte)) {
+                results[i] = one(thorough, pixels[i]);
+            }
         }
     }
 
@@ -78,7 +109,11 @@ class Rung {
     }
 
  private:
-    PreparedScene<End> prepared_;
+    static constexpr bool wide = !std::is_same_v<End, double>;
+
+    std::unique_ptr<PreparedScene<End>> prepared_;
+    std::unique_ptr<PreparedScene<double>> doubles_;
+    std::unique_ptr<PlainScene> plain_;
     const Tree& tree_;
     int number_;
     bool last_;
@@ -133,21 +168,21 @@ void on_threads(int threads, const Work& work, const std::function<void()>& watc
 }
 
 template <typename End>
-std::unique_ptr<Rung<End>> make_rung(const Scene& scene, const Tree& tree, int number, bool last) {
+std::unique_ptr<Rung<End>> make_rung(const Scene& scene, const Tree& tree, int number, bool last, bool quick) {
     const Upward upward;
-    return std::make_unique<Rung<End>>(scene, tree, number, last);
+    return std::make_unique<Rung<End>>(scene, tree, number, last, quick);
 }
 
 // Those of `indices` that this rung leaves undecided.
 template <typename End>
 std::vector<std::size_t> climb(const Scene& scene, const Tree& tree, const std::vector<std::array<int, 2>>& pixels,
-                               const std::vector<std::size_t>& indices, int number, int threads,
+                               const std::vector<std::size_t>& indices, int number, int threads, bool quick,
                                std::vector<Pixel>& results, const std::function<void(double)>& watch) {
     constexpr std::size_t share = sizeof(End) == sizeof(double) ? 64 : 4;
     const bool last = number == static_cast<int>(rung_digits.size()) - 1;
     std::unique_ptr<Rung<End>> rung;
     try {
-        rung = make_rung<End>(scene, tree, number, last);
+        rung = make_rung<End>(scene, tree, number, last, quick);
     } catch (const Undecided& undecided) {
         for (const std::size_t i : indices) {
             results[i].reason = undecided.reason;
@@ -188,7 +223,7 @@ std::vector<std::size_t> climb(const Scene& scene, const Tree& tree, const std::
 }  // namespace
 
 std::vector<Pixel> certify(const Scene& scene, const std::vector<std::array<int, 2>>& pixels, int first, int last,
-                           int threads, const std::function<void(double)>& watch) {
+                           int threads, bool quick, const std::function<void(double)>& watch) {
     std::vector<Pixel> results(pixels.size());
     std::vector<std::size_t> left(pixels.size());
     for (std::size_t i = 0; i < left.size(); ++i) {
@@ -198,16 +233,16 @@ std::vector<Pixel> certify(const Scene& scene, const std::vector<std::array<int,
     for (int number = first; number <= last && !left.empty(); ++number) {
         switch (number) {
             case 0:
-                left = climb<double>(scene, tree, pixels, left, number, threads, results, watch);
+                left = climb<double>(scene, tree, pixels, left, number, threads, quick, results, watch);
                 break;
             case 1:
-                left = climb<Wide<2>>(scene, tree, pixels, left, number, threads, results, watch);
+                left = climb<Wide<2>>(scene, tree, pixels, left, number, threads, quick, results, watch);
                 break;
             case 2:
-                left = climb<Wide<4>>(scene, tree, pixels, left, number, threads, results, watch);
+                left = climb<Wide<4>>(scene, tree, pixels, left, number, threads, quick, results, watch);
                 break;
             default:
-                left = climb<Wide<8>>(scene, tree, pixels, left, number, threads, results, watch);
+                left = climb<Wide<8>>(scene, tree, pixels, left, number, threads, quick, results, watch);
         }
     }
     return results;

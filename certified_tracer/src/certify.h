@@ -25,9 +25,9 @@ struct Pixel {
 
 inline constexpr std::array<int, 4> rung_digits = {53, 128, 256, 512};
 
-// The pixels (column, row) on the rungs first to last. `watch(done)` is called now and then from the calling thread,
-// and may throw to stop it.
+// The pixels (column, row) on the rungs first to last; `quick`: with what spares intervals, or digits. `watch(done)` is
+// called now and then from the calling thread, and may throw to stop it.
 std::vector<Pixel> certify(const Scene& scene, const std::vector<std::array<int, 2>>& pixels, int first, int last,
-                           int threads, const std::function<void(double)>& watch);
+                           int threads, bool quick, const std::function<void(double)>& watch);
 
 }  // namespace certified

@@ -5,8 +5,11 @@
 #include <algorithm>
 #include <array>
 #include <cstddef>
+#include <limits>
+#include <numeric>
 #include <vector>
 
+#include "plain.h"
 #include "prepared.h"
 
 namespace certified {
@@ -90,10 +93,13 @@ class Bodies {
     using R = Ray<End>;
     using S = typename PreparedScene<End>::PreparedSurface;
 
-    Bodies(const PreparedScene<End>& scene, Judge<End>& judge) : scene_(scene), judge_(judge) {}
+    // `plain`: with which to leave out what plain doubles exclude, or none.
+    Bodies(const PreparedScene<End>& scene, Judge<End>& judge, const PlainScene* plain)
+        : scene_(scene), judge_(judge), plain_(plain) {}
 
-    // The first place beyond the ray's start; whether there is one.
-    bool meet(int index, const R& ray, Met<End>& met) {
+    // The first place beyond the ray's start; whether there is one. `narrow`: the ray in plain doubles;
+    // what is certainly not met before `end` may count as missed.
+    bool meet(int index, const R& ray, const PlainRay& narrow, double end, Met<End>& met) {
         const Body& body = scene_.scene.bodies[static_cast<std::size_t>(index)];
         if (body.program.empty()) {
             const Leaf& leaf = scene_.scene.leaves[body.leaves[0]];
@@ -102,16 +108,45 @@ class Bodies {
                 return false;  // they are convex
             }
             if (own && surface(leaf.first).kind == Kind::plane) {
-                return leave(index, leaf, ray, met);
+                return leave(index, leaf, ray, narrow, met);
             }
-            const Passage<End> passage = pass(leaf, ray, own);
+            const Passage<End> passage = pass(leaf, ray, narrow, end, own);
             if (passage.count == 0) {
                 return false;
             }
             met = {passage.crossings[0].t, index, passage.crossings[0].surface, passage.inside, passage.inside};
             return true;
         }
-        return meet_csg(index, body, ray, met);
+        return meet_csg(index, body, ray, narrow, met);
+    }
+
+    // What another kind of intervals has found of this ray, with its own place. Throws Undecided.
+    Met<End> located(const Met<double>& found, const R& ray) {
+        Met<End> met{{}, found.body, found.surface, found.inside, found.behind};
+        const S& s = surface(found.surface);
+        if (s.kind == Kind::plane) {
+            int side;
+            if (meet_plane(s, ray, met.t, side) == 0) {
+                throw Undecided{Reason::hit};
+            }
+            return met;
+        }
+        const Body& body = scene_.scene.bodies[static_cast<std::size_t>(found.body)];
+        const bool own = ray.body == found.body && body.program.empty();
+        const Passage<End> passage =
+            s.kind == Kind::sphere ? pass_sphere(found.surface, ray, own) : pass_quadric(found.surface, ray, own);
+        int places = 0;
+        for (int i = 0; i < passage.count; ++i) {
+            const I& t = passage.crossings[static_cast<std::size_t>(i)].t;
+            if (t.low_double() <= found.t.high() && t.high_double() >= found.t.low()) {
+                met.t = t;
+                ++places;
+            }
+        }
+        if (places != 1) {
+            throw Undecided{Reason::hit};
+        }
+        return met;
     }
 
     // Whether two distances are certainly different, and which is smaller: -1, 0 (equal by rule), 1.
@@ -153,16 +188,23 @@ class Bodies {
         return (ray.from_eye && s.eye) || (ray.surface >= 0 && surface(ray.surface).identity == s.identity);
     }
 
+    // It starts or ends there by rule, whatever the numbers say.
+    bool touches(const S& s, const R& ray) const { return starts_on(s, ray) || ends_on(s, ray); }
+
     bool ends_on(const S& s, const R& ray) const {
         return ray.to_light >= 0 && (*s.lights)[static_cast<std::size_t>(ray.to_light)];
     }
 
-    Passage<End> pass(const Leaf& leaf, const R& ray, bool own) {
+    Passage<End> pass(const Leaf& leaf, const R& ray, const PlainRay& narrow, double end, bool own) {
         switch (surface(leaf.first).kind) {
             case Kind::sphere:
+                if (plain_ != nullptr && !own && plain_->spheres[leaf.first].is_missed(narrow, end) &&
+                    !touches(surface(leaf.first), ray)) {
+                    return {};
+                }
                 return pass_sphere(static_cast<int>(leaf.first), ray, own);
             case Kind::plane:
-                return pass_planes(leaf, ray);
+                return pass_planes(leaf, ray, narrow, end);
             case Kind::quadric:
                 break;
         }
@@ -371,9 +413,22 @@ class Bodies {
         return sign;
     }
 
-    Passage<End> pass_planes(const Leaf& leaf, const R& ray) {
+    // Those of a polyhedron that matter, in their order; false: the ray certainly misses it.
+    bool sift(const Leaf& leaf, const PlainRay& narrow, double end, bool entries) {
+        if (plain_ != nullptr) {
+            return plain_->planes[leaf.first].sift(narrow, end, entries, sieve_);
+        }
+        sieve_.left.resize(leaf.count);
+        std::iota(sieve_.left.begin(), sieve_.left.end(), std::size_t(0));
+        return true;
+    }
+
+    Passage<End> pass_planes(const Leaf& leaf, const R& ray, const PlainRay& narrow, double end) {
+        if (!sift(leaf, narrow, end, true)) {
+            return {};
+        }
         Extreme enters{1}, leaves{-1};
-        for (std::size_t k = 0; k < leaf.count; ++k) {
+        for (const std::size_t k : sieve_.left) {
             const int index = static_cast<int>(leaf.first + k);
             I t;
             int side;
@@ -414,9 +469,10 @@ class Bodies {
     }
 
     // From a face inward, or a plate's other side.
-    bool leave(int index, const Leaf& leaf, const R& ray, Met<End>& met) {
+    bool leave(int index, const Leaf& leaf, const R& ray, const PlainRay& narrow, Met<End>& met) {
+        sift(leaf, narrow, infinite, false);
         Extreme leaves{-1};
-        for (std::size_t k = 0; k < leaf.count; ++k) {
+        for (const std::size_t k : sieve_.left) {
             const int plane = static_cast<int>(leaf.first + k);
             if (plane == ray.surface) {
                 continue;
@@ -455,13 +511,13 @@ class Bodies {
         bool sure;         // which surface it is
     };
 
-    bool meet_csg(int index, const Body& body, const R& ray, Met<End>& met) {
+    bool meet_csg(int index, const Body& body, const R& ray, const PlainRay& narrow, Met<End>& met) {
         std::uint64_t bits = 0;
         std::vector<Event>& events = events_;
         events.clear();
         for (std::size_t k = 0; k < body.leaves.size(); ++k) {
             second_sure_ = true;
-            const Passage<End> passage = pass(scene_.scene.leaves[body.leaves[k]], ray, false);
+            const Passage<End> passage = pass(scene_.scene.leaves[body.leaves[k]], ray, narrow, infinite, false);
             bits |= std::uint64_t(passage.inside) << k;
             for (int i = 0; i < passage.count; ++i) {
                 events.push_back(
@@ -523,8 +579,12 @@ class Bodies {
         return stack & 1;
     }
 
+    static constexpr double infinite = std::numeric_limits<double>::infinity();
+
     const PreparedScene<End>& scene_;
     Judge<End>& judge_;
+    const PlainScene* plain_;
+    PlainPlanes::Sieve sieve_;
     std::vector<Event> events_;
     bool second_sure_ = true;
 };

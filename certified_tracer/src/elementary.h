@@ -8,7 +8,7 @@
 #include <cstdlib>
 #include <limits>
 
-#include "interval.h"
+#include "double_interval.h"
 
 namespace certified {
 

@@ -48,25 +48,19 @@ class Interval {
 
     friend Interval operator*(const Interval& x, const Interval& y) {
         const End &xn = x.minus_low_, &xh = x.high_, &yn = y.minus_low_, &yh = y.high_;
-        if constexpr (std::is_same_v<End, double>) {
-            // All ends' products, upward, and those of their negatives.
-            return from_ends(larger(larger((-xn) * yn, xn * yh), larger(xh * yn, (-xh) * yh)),
-                             larger(larger(xn * yn, (-xn) * yh), larger((-xh) * yn, xh * yh)));
-        } else {
-            if (!(xn > End(0))) {  // x >= 0
-                if (!(yn > End(0))) {
-                    return from_ends((-xn) * yn, xh * yh);
-                }
-                return from_ends(xh * yn, !(yh < End(0)) ? xh * yh : (-xn) * yh);
+        if (!(xn > End(0))) {  // x >= 0
+            if (!(yn > End(0))) {
+                return from_ends((-xn) * yn, xh * yh);
             }
-            if (!(xh > End(0))) {  // x <= 0
-                return -(-x * y);
-            }
-            if (!(yn > End(0)) || !(yh > End(0))) {
-                return y * x;
-            }
-            return from_ends(larger(xn * yh, xh * yn), larger(xn * yn, xh * yh));
+            return from_ends(xh * yn, !(yh < End(0)) ? xh * yh : (-xn) * yh);
         }
+        if (!(xh > End(0))) {  // x <= 0
+            return -(-x * y);
+        }
+        if (!(yn > End(0)) || !(yh > End(0))) {
+            return y * x;
+        }
+        return from_ends(larger(xn * yh, xh * yn), larger(xn * yn, xh * yh));
     }
 
     // Throws Undecided where the divisor may be 0.
@@ -116,11 +110,6 @@ class Interval {
         return from_ends(larger(x.minus_low_, y.minus_low_), larger(x.high_, y.high_));
     }
 
-    // Of two enclosures of one number.
-    friend Interval both(const Interval& x, const Interval& y) {
-        return from_ends(smaller(x.minus_low_, y.minus_low_), smaller(x.high_, y.high_));
-    }
-
     Interval& operator+=(const Interval& x) { return *this = *this + x; }
 
  private:
@@ -136,5 +125,8 @@ class Interval {
 
     End minus_low_ = 0, high_ = 0;
 };
+
+template <>
+class Interval<double>;  // double_interval.h
 
 }  // namespace certified

@@ -6,8 +6,8 @@
 #include <cstddef>
 #include <vector>
 
+#include "double_interval.h"
 #include "elementary.h"
-#include "interval.h"
 #include "scene.h"
 
 namespace certified {

@@ -9,16 +9,10 @@
 #include <numeric>
 #include <vector>
 
-#include "interval.h"
+#include "plain.h"
 #include "scene.h"
 
 namespace certified {
-
-// A ray in doubles, which encloses another.
-struct DoubleRay {
-    std::array<Interval<double>, 3> origin, direction, inverse;
-    std::array<int, 3> sign;  // of the direction's coordinates; 0 where it is not certain
-};
 
 class Tree {
  public:
@@ -27,47 +21,56 @@ class Tree {
             const Body& body = scene.bodies[i];
             const Box box{body.low, body.high};
             if (std::isfinite(box.low[0] + box.high[0] + box.low[1] + box.high[1] + box.low[2] + box.high[2])) {
+                order_.push_back(boxes_.size());
                 boxes_.push_back(box);
                 bodies_.push_back(static_cast<int>(i));
             } else {
                 boundless_.push_back(static_cast<int>(i));
             }
         }
-        order_.resize(bodies_.size());
-        std::iota(order_.begin(), order_.end(), std::size_t(0));
-        if (!order_.empty()) {
-            build(0, order_.size());
+        // Those around others are searched when these have been.
+        const double all = boxes_.empty() ? 0 : area(hull(0, boxes_.size()));
+        const auto small =
+            std::partition(order_.begin(), order_.end(), [&](std::size_t i) { return 2 * area(boxes_[i]) > all; });
+        large_ = static_cast<std::size_t>(small - order_.begin());
+        if (large_ < order_.size()) {
+            build(large_, order_.size());
         }
     }
 
     // Calls visit(body, near) for every body that the ray may meet before `reach()`; near: not before that distance.
     template <typename Visit, typename Reach>
-    void search(const DoubleRay& ray, const Visit& visit, const Reach& reach) const {
+    void search(const PlainRay& ray, const Visit& visit, const Reach& reach) const {
+        double near;
+        if (!nodes_.empty()) {
+            std::array<int, 64> stack;
+            std::size_t depth = 1;
+            stack[0] = 0;
+            while (depth > 0) {
+                const Node& node = nodes_[static_cast<std::size_t>(stack[--depth])];
+                if (!may_meet(ray, node.box.low, node.box.high, reach(), near)) {
+                    continue;
+                }
+                if (node.body >= 0) {
+                    visit(node.body, near);
+                    continue;
+                }
+                const int first = node.second - node.left_size;
+                const bool forward = ray.axes[node.axis].sign >= 0;
+                stack[depth++] = forward ? node.second : first;
+                stack[depth++] = forward ? first : node.second;
+            }
+        }
         for (const int body : boundless_) {
             visit(body, 0.0);
         }
-        if (nodes_.empty()) {
-            return;
-        }
-        std::array<int, 64> stack;
-        int depth = 0;
-        stack[0] = 0;
-        while (depth >= 0) {
-            const Node& node = nodes_[static_cast<std::size_t>(stack[static_cast<std::size_t>(depth--)])];
-            double near;
-            if (!may_meet(ray, node.box, reach(), near)) {
-                continue;
+        for (std::size_t i = 0; i < large_; ++i) {
+            const Box& box = boxes_[order_[i]];
+            if (may_meet(ray, box.low, box.high, reach(), near)) {
+                visit(bodies_[order_[i]], near);
             }
-            if (node.body >= 0) {
-                visit(node.body, near);
-                continue;
-            }
-            stack[static_cast<std::size_t>(++depth)] = node.second;
-            stack[static_cast<std::size_t>(++depth)] = node.second - node.left_size;
         }
     }
-
-    std::size_t size() const { return nodes_.size(); }
 
  private:
     struct Box {
@@ -78,12 +81,11 @@ class Tree {
         Box box;
         int body = -1;
         int second = 0, left_size = 0;
+        std::size_t axis = 0;  // by which they are halves
     };
 
-    // In halves by the longest axis: few bodies are searched.
-    int build(std::size_t first, std::size_t last) {
-        const auto index = static_cast<int>(nodes_.size());
-        nodes_.emplace_back();
+    // Of the boxes of some in order.
+    Box hull(std::size_t first, std::size_t last) const {
         Box box = boxes_[order_[first]];
         for (std::size_t i = first + 1; i < last; ++i) {
             const Box& other = boxes_[order_[i]];
@@ -92,11 +94,24 @@ class Tree {
                 box.high[axis] = std::max(box.high[axis], other.high[axis]);
             }
         }
+        return box;
+    }
+
+    static double area(const Box& box) {
+        const double x = box.high[0] - box.low[0], y = box.high[1] - box.low[1], z = box.high[2] - box.low[2];
+        return x * y + y * z + z * x;
+    }
+
+    // In halves by the longest axis: few bodies are searched.
+    int build(std::size_t first, std::size_t last) {
+        const auto index = static_cast<int>(nodes_.size());
+        nodes_.emplace_back();
+        const Box box = hull(first, last);
         int body = -1, second = 0, left_size = 0;
+        std::size_t axis = 0;
         if (last - first == 1) {
             body = bodies_[order_[first]];
         } else {
-            std::size_t axis = 0;
             for (std::size_t k = 1; k < 3; ++k) {
                 axis = box.high[k] - box.low[k] > box.high[axis] - box.low[axis] ? k : axis;
             }
@@ -109,35 +124,14 @@ class Tree {
             second = build(half, last);
             left_size = second - left;
         }
-        nodes_[static_cast<std::size_t>(index)] = {box, body, second, left_size};
+        nodes_[static_cast<std::size_t>(index)] = {box, body, second, left_size, axis};
         return index;
-    }
-
-    // Slabs; where a direction's sign is not certain, that axis excludes nothing.
-    static bool may_meet(const DoubleRay& ray, const Box& box, double reach, double& near) {
-        double leave = reach;
-        near = 0;
-        for (std::size_t axis = 0; axis < 3; ++axis) {
-            const int sign = ray.sign[axis];
-            if (sign == 0) {
-                const Interval<double>& d = ray.direction[axis];
-                if (d.is_zero() &&
-                    (ray.origin[axis].high() < box.low[axis] || ray.origin[axis].low() > box.high[axis])) {
-                    return false;
-                }
-                continue;
-            }
-            const double entry = sign > 0 ? box.low[axis] : box.high[axis];
-            const double exit = sign > 0 ? box.high[axis] : box.low[axis];
-            near = std::max(near, ((Interval<double>(entry) - ray.origin[axis]) * ray.inverse[axis]).low());
-            leave = std::min(leave, ((Interval<double>(exit) - ray.origin[axis]) * ray.inverse[axis]).high());
-        }
-        return !(near > leave);
     }
 
     std::vector<Box> boxes_;
     std::vector<int> bodies_, boundless_;
     std::vector<std::size_t> order_;
+    std::size_t large_ = 0;  // the first of these in order
     std::vector<Node> nodes_;
 };
 

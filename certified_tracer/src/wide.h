@@ -28,7 +28,7 @@ class Wide {
         const double fraction = std::frexp(std::fabs(x), &power);
         sign_ = x < 0 ? -1 : 1;
         exponent_ = power;
-        mantissa_[limbs - 1] = static_cast<std::uint64_t>(std::ldexp(fraction, 64));
+        mantissa_[limbs - 1] = static_cast<std::uint64_t>(static_cast<std::int64_t>(fraction * 0x1p53)) << 11;
     }
 
     Wide(int x) : Wide(static_cast<double>(x)) {}
