@@ -294,3 +294,32 @@ def test_what_cannot_go_on(whitted, scene, tmp_path):
     assert (status, "--resume: OUT must be a file" in err) == (2, True)
     status, _, err = whitted("render", scene, tmp_path / "a.ppm", "--method", "povray", "--resume")
     assert (status, "--resume: povray draws a picture in one go" in err) == (2, True)
+
+
+# ---- In which order pixels are drawn
+
+
+@pytest.mark.parametrize(("width", "rows"), [(1, 1), (7, 3), (16, 4), (33, 10), (640, 9)])
+def test_pixels_are_drawn_in_tiles(mi, width, rows):
+    from mitsuba_plugins.integrators.pictures import _in_tiles, _place_in_tiles
+
+    first = 11
+    order = np.array(_in_tiles(width, first, rows)).astype(int) - first * width
+    assert sorted(order) == list(range(width * rows))
+    assert np.array_equal(order[np.array(_place_in_tiles(width, rows))], np.arange(width * rows))
+    row, column = np.divmod(order[: 4 * width * (rows // 4)].reshape(-1, 4), width)
+    assert (np.diff(row, axis=1) == 1).all()
+    assert (np.diff(column, axis=1) == 0).all()
+    assert set(np.diff(column[:, 0])) <= {1, 1 - width}
+
+
+def test_whole_numbers_are_divided_exactly(mi):
+    from mitsuba_plugins.integrators.pictures import _divided
+
+    numbers = np.random.default_rng(1).integers(0, 2**32, 4000, dtype=np.uint32)
+    divisors = np.concatenate([numbers[::-1] | 1, np.array([1, 2, 3, 2**32 - 1], np.uint32)])
+    multiples = (numbers[: len(divisors) // 2] // 977 * 977).astype(np.uint32)
+    a = np.concatenate([numbers, multiples[:4]])
+    assert np.array_equal(np.array(_divided(mi.UInt32(a), mi.UInt32(divisors))), a // divisors)
+    exact = mi.UInt32(multiples), mi.UInt32(np.full(len(multiples), 977, np.uint32))
+    assert np.array_equal(np.array(_divided(*exact)), multiples // 977)

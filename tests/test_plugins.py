@@ -315,8 +315,8 @@ def test_quotients_are_rounded_once(mi):
 
 
 HOST_DIVISIONS = {
-    "intersection/analytic.py": {"_bound"},
     "intersection/columns.py": {"column"},
+    "intersection/geometry.py": {"surrounding_ball"},
     "intersection/leaf_table.py": {"_sphere_around"},
     "intersection/primitives.py": {"_pieces"},
     "intersection/rounding.py": {"camera_errors"},
@@ -326,7 +326,10 @@ HOST_DIVISIONS = {
     "integrators/pace.py": {"__init__", "rows", "samples", "passes", "launch"},
     "sampler.py": {"disc_point", "cone_direction", "_small_turn"},
     "trial.py": {"_memory"},
-    "integrators/pictures.py": {"_stage", "told", "_corners", "sample_offsets", "signed_bands", "chosen_pixels"},
+    "integrators/pictures.py": {
+        *("bands_by_passes", "signed_bands", "chosen_pixels", "_stage", "told"),
+        *("sample_offsets", "_place_in_tiles", "_shown"),
+    },
     "integrators/whitted.py": {"__init__"},
 }
 """Functions that divide Python's or NumPy's numbers, or whole numbers, or build a path."""

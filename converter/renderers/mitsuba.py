@@ -97,7 +97,7 @@ class MitsubaRenderer:
                     sums = _sums_to_go_on_from(start, pixels)
                     bands = pictures.bands_by_passes(integrator, mitsuba_scene, sensor, sums, progress)
                 for first, color in bands:
-                    rows = np.moveaxis(np.asarray(color), 0, -1).reshape(-1, width, 3)
+                    rows = np.asarray(color).reshape(-1, width, 3)
                     pixels[first : first + len(rows)] = rows
         except KeyboardInterrupt:
             raise Interrupted(rendering()) from None
@@ -174,7 +174,7 @@ class MitsubaRenderer:
                     told = part_of(progress, 0, first)
                     bands = pictures.signed_bands(integrator, mitsuba_scene, sensor, refinement.least_weight, told)
                     for row, color, words in bands:
-                        rows = np.moveaxis(np.asarray(color), 0, -1).reshape(-1, width, 3)
+                        rows = np.asarray(color).reshape(-1, width, 3)
                         pixels[row : row + len(rows)] = rows
                         signatures[row : row + len(rows)] = np.asarray(words).reshape(-1, width)
                     too_deep.append(integrator.pixels_too_deep)

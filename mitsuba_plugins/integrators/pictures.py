@@ -23,6 +23,10 @@ Progress = Callable[[float], None]
 """Called after every launch with the finished share of the picture."""
 
 
+TILE = 4
+"""Rows of pixels that are drawn together: with four columns they are 16, a packet of processors with AVX-512."""
+
+
 @dataclass(frozen=True)
 class PassSums:
     """What is drawn of a picture in whole passes: their number, the sums of the samples' colours (Color3d), and the
@@ -41,12 +45,13 @@ def bands(
     but not long, so that there are signs of life and no more launches than that.
 
     Yields:
-        The first row of a finished band within the film's crop window, and its pixels' colours (Color3f), row by
-        row. Its pixels are among `pixels_too_deep` by then. After every launch `progress`, if any, is called with
-        the finished share of the picture.
+        The first row of a finished band within the film's crop window, and its pixels' colours, row by row, three
+        numbers each (Float). Its pixels are among `pixels_too_deep` by then. After every launch `progress`, if any,
+        is called with the finished share of the picture.
 
     """
     cells = [cell for cells in passes(spp or sensor.sampler().sample_count()) for cell in cells]
+    width = sensor.film().crop_size().x
     with integrator.prepared(scene, sensor), dr.suspend_grad():
         integrator.postpone_ties(True)
         pace = Pace(integrator.branching, integrator.max_depth[0])
@@ -56,7 +61,7 @@ def bands(
         ):
             if integrator.depth_limited:
                 integrator.pixels_too_deep += dr.count(too_deep)[0]
-            yield first, mi.Color3f(quotient(color, len(cells)))
+            yield first, _shown(color, len(cells), width)
 
 
 def bands_by_passes(
@@ -66,8 +71,8 @@ def bands_by_passes(
     long, for all of it has some samples soon. Short passes are drawn together.
 
     Yields:
-        The first row of a band within the film's crop window, and its pixels' colours (Color3f) with what is drawn
-        so far. What is left in ``sums`` (PassSums) has whole passes only, beginning with those of `start`.
+        The first row of a band within the film's crop window, and its pixels' colours, as `bands` has them, with what
+        is drawn so far. What is left in ``sums`` (PassSums) has whole passes only, beginning with those of `start`.
 
     """
     all_passes = passes(sensor.sampler().sample_count())
@@ -85,8 +90,10 @@ def bands_by_passes(
             bands = []
             sums = integrator.sums if begin else None
             for first, color, too_deep in _stage(integrator, sensor, pace, tables, begin, end, sums, progress):
-                bands.append((*color, too_deep if integrator.depth_limited else dr.zeros(mi.Bool, dr.width(color))))
-                yield first, mi.Color3f(quotient(color, end))
+                place = _place_in_tiles(width, dr.width(color) // width)
+                deep = too_deep if integrator.depth_limited else dr.zeros(mi.Bool, dr.width(color))
+                bands.append((*dr.gather(mi.Color3d, color, place), dr.gather(mi.Bool, deep, place)))
+                yield first, _shown(color, end, width)
             red, green, blue, too_deep = (dr.concat(parts) for parts in zip(*bands, strict=True))
             colors = mi.Color3d(red, green, blue)
             dr.eval(colors, too_deep)
@@ -101,8 +108,8 @@ def signed_bands(
     `least_weight`, see :mod:`.signature`.
 
     Yields:
-        The first row of a band within the film's crop window, and its pixels' colours (Color3f) and signatures
-        (UInt32).
+        The first row of a band within the film's crop window, and its pixels' colours, as `bands` has them, and
+        signatures (UInt32).
 
     """
     width, height = sensor.film().crop_size()
@@ -124,7 +131,7 @@ def signed_bands(
                 dr.sync_thread()
             if integrator.depth_limited:
                 integrator.pixels_too_deep += dr.count(too_deep)[0]
-            yield first, mi.Color3f(color), signature
+            yield first, dr.ravel(mi.Color3f(color)), signature
             first += rows
             if progress is not None:
                 progress(first / height)
@@ -184,7 +191,7 @@ def _stage(
 
     Yields:
         The first row of a finished band, the sums of its pixels' colours (Color3d), and where the depth limit
-        dropped a ray (Bool), if it is limited.
+        dropped a ray (Bool), if it is limited: both in the order of `_in_tiles`.
 
     """
     width, height = sensor.film().crop_size()
@@ -192,7 +199,7 @@ def _stage(
     first = 0
     while first < height:
         rows = min(height - first, pace.rows(width))
-        pixel = _rows(sensor.film(), first, rows * width)
+        pixel = _in_tiles(width, first, rows)
         drawn = _nothing(integrator, rows * width)
         if sums is not None:
             too_deep = dr.gather(mi.Bool, sums.too_deep, pixel) if integrator.depth_limited else False
@@ -311,23 +318,62 @@ def _rows(film: Any, first: int, count: int) -> Any:
     return dr.arange(mi.UInt32, count) + dr.opaque(mi.UInt32, first * film.crop_size().x)
 
 
+def _in_tiles(width: int, first: int, rows: int) -> Any:
+    """The numbers (UInt32) of the pixels of some rows of a picture, in strips of `TILE` rows, column by column.
+
+    So those of a packet form a square: their rays take the same way more often than those of a row.
+    """
+    columns, rows_there = dr.opaque(mi.UInt32, width), dr.opaque(mi.UInt32, rows)
+    number = dr.arange(mi.UInt32, width * rows)
+    strip = _divided(number, columns * TILE)
+    height = dr.minimum(rows_there - strip * TILE, TILE)
+    rest = number - strip * columns * TILE
+    column = _divided(rest, height)
+    return (dr.opaque(mi.UInt32, first) + strip * TILE + rest - column * height) * columns + column
+
+
+def _place_in_tiles(width: int, rows: int) -> Any:
+    """Where each pixel of some rows, row by row, stands in the order of `_in_tiles` (UInt32)."""
+    columns, rows_there = dr.opaque(mi.UInt32, width), dr.opaque(mi.UInt32, rows)
+    number = dr.arange(mi.UInt32, width * rows)
+    row = _divided(number, columns)
+    strip = row // TILE
+    height = dr.minimum(rows_there - strip * TILE, TILE)
+    return strip * columns * TILE + (number - row * columns) * height + row - strip * TILE
+
+
+def _shown(sums: Any, samples: int, width: int) -> Any:
+    """Colours, row by row, three numbers each (Float), of the sums of pixels (Color3d) in the order of `_in_tiles`."""
+    count = dr.width(sums)
+    result = dr.empty(mi.Float, 3 * count)
+    dr.scatter(result, mi.Color3f(quotient(sums, samples)), _in_tiles(width, 0, count // width))
+    return result
+
+
+def _divided(a: Any, b: Any) -> Any:
+    """Whole numbers (UInt32), divided and rounded down. Processors divide no vectors of them, but doubles, exactly."""
+    return mi.UInt32(quotient(mi.Float64(a), mi.Float64(b)))
+
+
 def _corners(film: Any, pixel: Any) -> Any:
     """Top left corners (Point2d) of pixels, by their numbers in the film's crop window, row by row."""
     columns = dr.opaque(mi.UInt32, film.crop_size().x)  # opaque, so that pictures of all sizes share one kernel
     left, top = (dr.opaque(mi.Float64, at) for at in film.crop_offset())  # and all parts of them
-    row = pixel // columns
+    row = _divided(pixel, columns)
     return mi.Point2d(pixel - row * columns, row) + mi.Point2d(left, top)
 
 
 def block(bands: Any, film: Any) -> Any:
-    """Rows of pixel colours as a film takes them up: cheaper than to splat them, and the same for a box filter."""
+    """Bands of a picture, as `bands` has them, as a film takes them up: cheaper than to splat them, and the same for a
+    box filter.
+    """
     width, height = film.crop_size()
     # After red, green and blue come alpha, where the film has it, and the sum of the filter's weights: all 1.
     count = film.base_channels_count() + 1
     ones = dr.full(mi.Float, 1, width * height)
-    channels = [dr.concat([band[k] for band in bands]) for k in range(3)] + [ones] * (count - 3)
     pixels = dr.empty(mi.Float, width * height * count)
-    index = dr.arange(mi.UInt32, width * height) * count
-    for k, channel in enumerate(channels):
-        dr.scatter(pixels, channel, index + k)
+    index = dr.arange(mi.UInt32, width * height)
+    color = dr.gather(mi.Color3f, dr.concat(bands), index)
+    for k, channel in enumerate([*color] + [ones] * (count - 3)):
+        dr.scatter(pixels, channel, index * count + k)
     return mi.ImageBlock(mi.TensorXf(pixels, (height, width, count)), film.crop_offset(), film.rfilter(), border=False)

@@ -98,9 +98,8 @@ class Primitives:
             else:
                 rows = GatheredRows(self.row, first, count, active, width)
             asked = rows, ray, own, reach, by_rules, which_piece
-            if isinstance(solid, Csg):  # worth a branch
-                return crossing_if(active, ray, width, lambda: solid.intersect(*asked))
-            return solid.intersect(*asked)
+            # A branch and no mask: the rays of a packet often meet objects of one kind.
+            return crossing_if(active, ray, width, lambda: solid.intersect(*asked))
 
         if by_rules:
             return _by_kind(self._solids_by_rules, self._solid_by_rules, index, active, intersect)
