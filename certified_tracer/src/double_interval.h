@@ -103,8 +103,12 @@ class Interval<double> {
     Ends ends_;  // minus the lower, and the upper
 };
 
+// Throws Undecided of what is not finite.
 template <typename End>
 Interval<End> widened(const Interval<double>& x) {
+    if (!std::isfinite(x.low()) || !std::isfinite(x.high())) {
+        throw Undecided{Reason::range};
+    }
     return Interval<End>::between(End(x.low()), End(x.high()));
 }
 
