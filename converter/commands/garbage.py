@@ -1,6 +1,5 @@
 """How seldom the process of a program looks for garbage."""
 
-import atexit
 import gc
 
 SELDOM = 50_000
@@ -9,6 +8,5 @@ hundred times while modules are imported, whose objects all stay."""
 
 
 def collect_seldom() -> None:
-    """Look for garbage seldom, and not when the interpreter ends: that is a sixth of a small picture's process."""
+    """Look for garbage seldom while the program runs; at its end all is collected, as nanobind's classes need it."""
     gc.set_threshold(SELDOM)
-    atexit.register(gc.freeze)

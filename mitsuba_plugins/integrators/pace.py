@@ -1,8 +1,8 @@
 """How much of a picture is drawn by one launch of the kernel.
 
-A launch has a fixed cost, some hundredths of a second in which Python records the kernel, or some tenths where a csg is
-large, and cannot be stopped. So it should take a good part of a second, and how many rays that are is found out while a
-picture is drawn.
+A launch has a fixed cost, some milliseconds in which Python records the kernel, or some hundredths of a second where a
+csg is large, and cannot be stopped. So it should take a good part of a second, and how many rays that are is found out
+while a picture is drawn.
 """
 
 import time

@@ -277,7 +277,7 @@ def _add_samples(
     key = integrator.pixel_key(corner)
     offsets, numbers = tables
     if dr.hint(dr.width(offsets) == 2, mode="scalar"):
-        # One sample needs no loop, which takes twice as long to record.
+        # One sample needs no loop.
         position = corner + dr.gather(mi.Point2d, offsets, mi.UInt32(0))
         number = integrator.name_sample(key, mi.UInt32(0))
         more, deep, _, unknown = integrator.trace(integrator.primary_ray(sensor, position, number), number, True)
