@@ -34,13 +34,13 @@ class Tree {
     explicit Tree(const SearchPlan& plan) : space_(plan.tree, plan.growth, plan.reach) {
         nodes_.reserve(plan.tree.nodes.size());
         for (const BvhNode& node : plan.tree.nodes) {
-            nodes_.push_back({space_.box(node.box), static_cast<int>(node.children), node.axis & 3U, -1});
+            nodes_.push_back({space_.box(node.box), static_cast<int>(node.children), node.axis & 3U, none});
         }
     }
 
     bool empty() const { return nodes_.empty(); }
     void put_leaf(std::size_t node, const Leaf& leaf) {
-        nodes_[node].other = static_cast<int>(leaves_.size());
+        nodes_[node].other = static_cast<unsigned>(leaves_.size()) & none;
         leaves_.push_back(leaf);
     }
 
@@ -52,7 +52,7 @@ class Tree {
         }
         wide_.build(plan, space_, shape_of, [&](std::uint32_t node, int here) {
             if (nodes_[node].children != 0 && plan.tree.nodes[node].count >= least_items) {
-                nodes_[node].other = here;
+                nodes_[node].other = static_cast<unsigned>(here) & none;
             }
         });
     }
@@ -85,7 +85,8 @@ class Tree {
         }
         for (int index = 0;;) {
             const Node& node = nodes_[static_cast<std::size_t>(index)];
-            if (may_leave && node.children != 0 && node.other >= 0 && leave(since, bound, node.other, walks)) {
+            if (may_leave && node.children != 0 && node.other != none &&
+                leave(since, bound, static_cast<int>(node.other), walks)) {
                 // The rest is theirs.
             } else if (node.children != 0) {
                 const bool swapped = backward[node.axis];
@@ -137,11 +138,13 @@ class Tree {
         return true;
     }
 
+    static constexpr unsigned none = (1U << 30U) - 1U;
+
     struct Node {
         CoarseBox<Real> box;
-        int children;       // the first of two neighbours; 0: it is a leaf
-        unsigned axis : 2;  // along which the first child lies before the second
-        int other : 30;     // the number of the leaf, or of the same node in the wide tree, -1: there is none
+        int children;         // the first of two neighbours; 0: it is a leaf
+        unsigned axis : 2;    // along which the first child lies before the second
+        unsigned other : 30;  // the number of the leaf, or of the same node in the wide tree, if there is one
     };
 
     std::vector<Node> nodes_;
