@@ -52,7 +52,7 @@ check: .venv/.checkers
 
 figures: .venv/.installed
 	@mkdir -p docs out
-	for program in figures.py "growth.py --chart docs/growth.png" planes.py refused.py why.py; do \
+	for program in figures.py "growth.py --chart docs/growth.png" planes.py refused.py why.py peak.py; do \
 	    $(BIN)/python benchmarks/$$program || exit; done >out/figures.txt
 	cat out/figures.txt
 	$(BIN)/python benchmarks/put_tables.py out/figures.txt

@@ -166,6 +166,25 @@ def test_balls_smaller_than_pixels():
     assert check(scene, 64, 48) > 3500
 
 
+@pytest.mark.parametrize("seed", range(2))
+def test_rays_that_go_on_alone(seed):
+    # Mirrors that send the rays of a group everywhere, in a room, the first object, from within which some start.
+    rng = random.Random(seed)
+    scene = new_scene((0.9, 0.95, 1.0), (0.2, 0.3, 0.5))
+    mirror, white = add_finish(scene, ka=0.1, kd=0.3, kr=0.9), scene.add_solid(WHITE)
+    scene.add_polyhedron(white, mirror, box((-4, -4, -4), (4, 4, 4)))
+    for number in range(400):
+        center = [rng.uniform(-1, 1) for _ in range(3)]
+        size = 0.04 + 0.06 * rng.random()
+        if number % 3:
+            scene.add_sphere(white, mirror, center, size)
+        else:
+            scene.add_polyhedron(white, mirror, box([c - size for c in center], [c + size for c in center]))
+    scene.set_camera((0, 0.5, 3), BLACK, (0, 1, 0), 45)
+    scene.add_light((3, 3.5, 2), WHITE, CONSTANT)
+    assert check(scene, 32, 24, max_depth=3) > 4 * 32 * 24
+
+
 @pytest.mark.parametrize("precision", PRECISIONS)
 @pytest.mark.parametrize("shape", ["ball", "block", "wedge"])
 def test_rays_that_graze_a_box(shape, precision):

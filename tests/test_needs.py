@@ -1,6 +1,7 @@
 """What a scene needs, what is told of it, and which `ior` is which."""
 
 import gc
+import tracemalloc
 from collections.abc import Sequence
 from dataclasses import replace
 from pathlib import Path
@@ -14,7 +15,7 @@ from strategies import scenes
 from converter.analysis.notices import ior_notices, scene_notices
 from converter.scene import kept
 from converter.scene.depth import MAX_DEPTH
-from converter.scene.geometry import scene_facts, simplified
+from converter.scene.geometry import check_geometry, scene_facts, simplified
 from converter.scene.model import (
     Camera,
     Csg,
@@ -266,3 +267,16 @@ def test_shapes_are_looked_into_once_where_some_are_simplified(monkeypatch: pyte
     assert simpler.objects[1].shape == Sphere((0, 0, 0), 1)
     assert scene_needs(simpler, Settings()).boxes == (scene_facts(scene)[0][:2], ((-1, -1, -1), (1, 1, 1)))
     assert looked == [wedge]
+
+
+def test_what_is_known_of_balls_takes_little_memory() -> None:
+    balls = tuple(Object(0, 0, Sphere((float(i), 2.0, 3.0), 0.5)) for i in range(3000))
+    scene = replace(scene_of(MATTE), objects=balls)
+    tracemalloc.start()
+    assert not check_geometry(scene)
+    needs = scene_needs(scene, Settings())
+    taken, _ = tracemalloc.get_traced_memory()
+    tracemalloc.stop()
+    assert taken < 40 * len(balls)
+    assert needs.boxes[-1] == ((2998.5, 1.5, 2.5), (2999.5, 2.5, 3.5)) == needs.facts[2999][:2]
+    assert needs.facts[1:3] == tuple(scene_facts(scene))[1:3] and len(needs.bounded) == 3000

@@ -4,25 +4,20 @@ from collections.abc import Sequence
 
 from converter.frozen import replace
 from converter.scene.errors import Problem
+from converter.scene.facts import facts_of, with_facts
 from converter.scene.kept import kept_with
-from converter.scene.model import Scene, Shape
+from converter.scene.model import Scene
 from converter.shapes.kind import Facts
-from converter.shapes.table import SHAPE_KINDS, shape_kind
+from converter.shapes.table import shape_kind
 
 
-def scene_facts(scene: Scene) -> tuple[Facts, ...]:
-    """What is known of each object's shape. All in one go, kind by kind, and once for each scene."""
+def scene_facts(scene: Scene) -> Sequence[Facts]:
+    """What is known of each object's shape, once for each scene."""
     kept = kept_with(scene)
     if "facts" not in kept:
-        kept["facts"] = _looked_into([o.shape for o in scene.objects])
-    found: tuple[Facts, ...] = kept["facts"]
+        kept["facts"] = facts_of([o.shape for o in scene.objects])
+    found: Sequence[Facts] = kept["facts"]
     return found
-
-
-def _looked_into(shapes: Sequence[Shape]) -> tuple[Facts, ...]:
-    kinds = set(map(type, shapes))
-    found = {kind: iter(SHAPE_KINDS[kind].facts([s for s in shapes if type(s) is kind])) for kind in kinds}
-    return tuple([next(found[type(shape)]) for shape in shapes])
 
 
 def simplified(scene: Scene) -> Scene:
@@ -31,11 +26,11 @@ def simplified(scene: Scene) -> Scene:
     changed = [i for i, (shape, o) in enumerate(zip(shapes, scene.objects, strict=True)) if shape is not o.shape]
     if not changed:
         return scene
-    objects, facts = list(scene.objects), list(scene_facts(scene))
-    for i, found in zip(changed, _looked_into([shapes[i] for i in changed]), strict=True):
-        objects[i], facts[i] = replace(objects[i], shape=shapes[i]), found
+    objects = list(scene.objects)
+    for i in changed:
+        objects[i] = replace(objects[i], shape=shapes[i])
     result = replace(scene, objects=tuple(objects))
-    kept_with(result)["facts"] = tuple(facts)
+    kept_with(result)["facts"] = with_facts(scene_facts(scene), {i: shapes[i] for i in changed})
     return result
 
 

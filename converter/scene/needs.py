@@ -1,10 +1,13 @@
 """What a scene needs of a renderer, worked out once, so that neither renderer models more than that."""
 
 import sys
+from collections.abc import Sequence
+from operator import attrgetter
 
 from converter.frozen import dataclass
 from converter.scene.depth import DepthLimit, depth_limit, follows
 from converter.scene.effects import Effect, scene_effects
+from converter.scene.facts import column
 from converter.scene.geometry import scene_facts
 from converter.scene.kept import kept_with
 from converter.scene.model import Color, Finish, Scene, Vector
@@ -49,11 +52,11 @@ class SceneNeeds:
     samples: int
     depth: DepthLimit
     background: Color
-    facts: tuple[Facts, ...]
-    planes: tuple[tuple[int, ...], ...]
-    plates: tuple[tuple[int, ...], ...]
-    boxes: tuple[tuple[Vector, Vector], ...]
-    bounded: tuple[bool, ...]
+    facts: Sequence[Facts]
+    planes: Sequence[tuple[int, ...]]
+    plates: Sequence[tuple[int, ...]]
+    boxes: Sequence[tuple[Vector, Vector]]
+    bounded: Sequence[bool]
 
     @property
     def max_depth(self) -> int:
@@ -107,10 +110,10 @@ def _worked_out(scene: Scene, settings: Settings) -> SceneNeeds:
         depth=depth,
         background=scene.ambient if settings.background is None else settings.background,
         facts=facts,
-        planes=tuple(f.planes for f in facts),
-        plates=tuple(f.plate for f in facts),
-        boxes=tuple((f.low, f.high) for f in facts),
-        bounded=tuple(f.bounded for f in facts),
+        planes=column(facts, attrgetter("planes")),
+        plates=column(facts, attrgetter("plate")),
+        boxes=column(facts, attrgetter("low", "high")),
+        bounded=column(facts, attrgetter("bounded")),
     )
 
 

@@ -60,8 +60,15 @@ struct Boxes {
         return true;
     }
 
-    Bvh tree(std::uint32_t items_in_a_leaf) const {
+    // Puts the boxes into the tree's order, if wanted.
+    Bvh tree(std::uint32_t items_in_a_leaf, std::vector<Box>* in_order = nullptr) const {
         Bvh tree = build_bvh(boxes, items_in_a_leaf);
+        if (in_order != nullptr) {
+            in_order->reserve(boxes.size());
+            for (const std::uint32_t index : tree.order) {
+                in_order->push_back(boxes[index]);
+            }
+        }
         for (std::uint32_t& item : tree.order) {
             item = items[item];
         }
@@ -91,8 +98,8 @@ void add_leaf_tree(const CsgDescription& csg, int digits, CsgPlan& plan) {
 
 SearchPlan plan_search(const SceneDescription& scene, Search search, Precision precision) {
     SearchPlan plan;
-    const bool wants_tree =
-        search == Search::bvh || (search == Search::automatic && cost_of(scene) >= least_cost_of_a_tree);
+    plan.forced = search == Search::bvh;
+    const bool wants_tree = plan.forced || (search == Search::automatic && cost_of(scene) >= least_cost_of_a_tree);
     Boxes boxes;
     for (std::size_t i = 0; i < scene.objects.size(); ++i) {
         std::optional<Bounds> found;
@@ -105,7 +112,7 @@ SearchPlan plan_search(const SceneDescription& scene, Search search, Precision p
     }
     plan.growth = boxes.growth;
     plan.reach = boxes.reach;
-    plan.tree = boxes.tree(leaf_size);
+    plan.tree = boxes.tree(leaf_size, &plan.boxes);
     return plan;
 }
 

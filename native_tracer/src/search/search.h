@@ -11,7 +11,9 @@
 namespace whitted {
 
 struct SearchPlan {
-    Bvh tree;                // its items are indices of objects
+    bool forced = false;  // a tree was asked for: all is done that a search by trees can do, also where it does not pay
+    Bvh tree;             // its items are indices of objects
+    std::vector<Box> boxes;  // of its items, in the tree's order
     std::vector<int> apart;  // objects outside it, which every ray is tested against; ascending
     // A computation that is wrong by a distance d somewhere on an object in the tree is right somewhere in its box
     // widened by growth times d.

@@ -27,6 +27,12 @@ struct CoarseBox {
     typename Coarse<Real>::Number low[3], high[3];
 };
 
+// A box to a lane.
+template <typename Real>
+struct CoarseBoxes {
+    Coarse<Real> low[3], high[3];
+};
+
 // What the boxes of a tree have in common. Their corners are kept relative to the middle of all, in a unit in which
 // none is larger than 1.
 template <typename Real>
@@ -110,14 +116,26 @@ class BoxTest {
         prepare(2, origin.z, rays.direction.z);
     }
 
+    // The same of one of the rays in all lanes.
+    BoxTest alone(int lane) const {
+        BoxTest result(unit_);
+        for (int k = 0; k < 3; ++k) {
+            result.before_[k] = before_[k][lane];
+            result.behind_[k] = behind_[k][lane];
+            result.inverse_[k] = inverse_[k][lane];
+        }
+        return result;
+    }
+
     // A finite bound of distances, for operator().
     C bound(L distance) const {
         return min(rounded(distance * L(unit_)) * C(slack), C(std::numeric_limits<Number>::max()));
     }
 
     // Whether rays are in the box somewhere between their origin and `bound`, and since when: infinite for those that
-    // are not.
-    [[gnu::always_inline]] bool operator()(const CoarseBox<Real>& box, C bound, C& since) const {
+    // are not. Each ray in the same box, or in its own.
+    template <typename Box>
+    [[gnu::always_inline]] bool operator()(const Box& box, C bound, C& since) const {
         C enter = Number(0);
         C leave = std::numeric_limits<Number>::infinity();
         for (int k = 0; k < 3; ++k) {
@@ -132,6 +150,8 @@ class BoxTest {
     }
 
  private:
+    explicit BoxTest(Real unit) : unit_(unit) {}
+
     // More than the roundings of the slope, its inverse, the difference and the product together, of both distances.
     static constexpr Number slack = 1 + 16 * std::numeric_limits<Number>::epsilon();
     // No product with an inverse is too large for a number.

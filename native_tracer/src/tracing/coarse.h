@@ -23,6 +23,24 @@ struct Coarse {
     Coarse() = default;
     Coarse(Number same) : Coarse(each<Coarse>([same] { return same - Reals{}; })) {}
 
+    // Small whole numbers, a byte each.
+    static Coarse of_bytes(const unsigned char* from) {
+        Coarse result;
+        result.value[0] = R::of_bytes(from);
+        if constexpr (sizeof(result.value) > sizeof(result.value[0])) {
+            result.value[1] = R::of_bytes(from + R::lanes);
+        }
+        return result;
+    }
+
+    Number operator[](int lane) const {
+        if constexpr (R::lanes == 1) {
+            return value[0];
+        } else {
+            return value[lane / R::lanes][lane % R::lanes];
+        }
+    }
+
     friend Coarse operator*(Coarse a, Coarse b) {
         return each<Coarse>([](Reals x, Reals y) { return x * y; }, a, b);
     }
@@ -47,6 +65,14 @@ struct Coarse {
         return each<Coarse>(
             [](Reals x, Reals y, Reals one, Reals other) { return R::select(R::less_equal(x, y), one, other); }, a, b,
             then, otherwise);
+    }
+    // Bit i is lane i.
+    friend unsigned bits_less_equal(Coarse a, Coarse b) {
+        unsigned bits = R::bits(R::less_equal(a.value[0], b.value[0]));
+        if constexpr (sizeof(a.value) > sizeof(a.value[0])) {
+            bits |= R::bits(R::less_equal(a.value[1], b.value[1])) << R::lanes;
+        }
+        return bits;
     }
     friend bool any_less_equal(Coarse a, Coarse b) {
         auto some = R::less_equal(a.value[0], b.value[0]);

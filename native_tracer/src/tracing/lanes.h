@@ -70,8 +70,9 @@ struct Mask {
         return result;
     }
 
-    // The first `count` lanes.
+    // The first `count` lanes, or one of them.
     static Mask first(int count);
+    static Mask only(int lane);
 
     // Lane i is value_of(i).
     template <typename ValueOf>
@@ -146,6 +147,11 @@ struct Indices {
 template <typename Real>
 Mask<Real> Mask<Real>::first(int count) {
     return Indices<Real>::numbers() < Indices<Real>(count);
+}
+
+template <typename Real>
+Mask<Real> Mask<Real>::only(int lane) {
+    return Indices<Real>::numbers() == Indices<Real>(lane);
 }
 
 template <typename Real>
@@ -265,6 +271,16 @@ Lanes<Real> max(Lanes<Real> a, Lanes<Real> b) {
 template <typename Real>
 Lanes<Real> abs(Lanes<Real> a) {
     return each<Lanes<Real>>([](auto x) { return Register<Real>::abs(x); }, a);
+}
+
+// The smallest of all lanes.
+template <typename Real>
+Real least(Lanes<Real> a) {
+    Real result = a[0];
+    for (int lane = 1; lane < lane_count<Real>; ++lane) {
+        result = a[lane] < result ? a[lane] : result;
+    }
+    return result;
 }
 
 // base^exponent, neither negative; 0^0 is 1. Whole exponents are multiplied out, in 2 log2(exponent) steps at most: a

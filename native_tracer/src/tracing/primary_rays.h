@@ -18,8 +18,10 @@
 
 namespace whitted::WHITTED_ISA {
 
-// The rays of a rectangle of pixels: row by row, in each some or all places of a grid of grid x grid rays a pixel, one
-// place of it after the other.
+// The rays of a rectangle of pixels: block by block, in each some or all places of a grid of grid x grid rays a pixel,
+// one place of it after the other. Within a block pixels follow one another so that any group of 4, 8, 16 is about a
+// square: its rays meet the same things for longer than those of a row would. Morton, "A Computer Oriented Geodetic
+// Data Base; and a New Technique in File Sequencing", IBM, 1966.
 template <typename Real>
 class PrimaryRays {
  public:
@@ -35,15 +37,13 @@ class PrimaryRays {
           reach_(max_norm(Vector<Lanes<Real>>(camera.eye()))),
           mask_(mask),
           part_(settings.part),
-          count_(tile.right - tile.left),
-          row_(tile.top) {
-        if (mask_ != nullptr) {
-            find_pixels();
-        }
+          left_(tile.left),
+          top_(tile.top) {
+        find_pixels();
     }
 
-    bool done() const { return row_ == tile_.bottom; }
-    bool begins_row() const { return index_ == 0 && sample_ == 0; }
+    bool done() const { return top_ >= tile_.bottom; }
+    bool begins_block() const { return index_ == 0 && sample_ == 0; }
 
     // The key of each pixel's samples, see sampler.h, in the order of their numbers.
     void fill_pixel_keys(std::uint32_t seed, std::vector<PixelKey>& keys) const {
@@ -63,13 +63,12 @@ class PrimaryRays {
         camera_.move_to_lens(group.rays, point);
     }
 
-    // The next rays of the row, as many as there are lanes and pixels left.
+    // The next rays of the block, as many as there are lanes and pixels left.
     Group<Real> next() {
         using L = Lanes<Real>;
-        const L columns = mask_ != nullptr
-                              ? L::gather([&](int lane) { return static_cast<Real>(part_.left + masked_column(lane)); })
-                              : L(static_cast<Real>(part_.left + tile_.left + index_)) + L::numbers();
-        const L rows = static_cast<Real>(part_.top + row_);
+        L columns, rows;
+        load(columns_.data() + index_, columns);
+        load(rows_.data() + index_, rows);
         const int place = places_ ? (*places_)[static_cast<std::size_t>(sample_)] : sample_;
         Group<Real> group;
         group.rays.origin = Vector<L>(camera_.eye());
@@ -82,11 +81,7 @@ class PrimaryRays {
         group.rays.reach = reach_;
         group.weight = Real(1);
         group.depth = 0;
-        const int first_pixel = (row_ - tile_.top) * (tile_.right - tile_.left);
-        group.pixel =
-            Indices<Real>(first_pixel) +
-            (mask_ != nullptr ? Indices<Real>::gather([&](int lane) { return masked_column(lane) - tile_.left; })
-                              : Indices<Real>(index_) + Indices<Real>::numbers());
+        load(pixels_.data() + index_, group.pixel);
         group.record = -1;
         group.sample = place;
         group.path = static_cast<int>(primary_path);
@@ -96,6 +91,8 @@ class PrimaryRays {
     }
 
  private:
+    static constexpr int block_size = 8;
+
     void advance() {
         index_ += lane_count<Real>;
         if (index_ < count_) {
@@ -104,21 +101,31 @@ class PrimaryRays {
         index_ = 0;
         if (++sample_ == samples_) {
             sample_ = 0;
-            ++row_;
-            if (mask_ != nullptr) {
-                find_pixels();
-            }
+            next_block();
+            find_pixels();
         }
     }
 
-    // Goes to the next row that has any of the pixels wanted, if this has none, and finds them.
+    void next_block() {
+        left_ += block_size;
+        if (left_ >= tile_.right) {
+            left_ = tile_.left;
+            top_ += block_size;
+        }
+    }
+
+    // Goes to the next block that has any of the pixels wanted, if this has none, and finds them.
     void find_pixels() {
-        for (; row_ != tile_.bottom; ++row_) {
-            const unsigned char* row = mask_ + static_cast<std::size_t>(row_) * static_cast<std::size_t>(part_.width);
+        for (; !done(); next_block()) {
             count_ = 0;
-            for (int column = tile_.left; column < tile_.right; ++column) {
-                if (row[column] != 0) {
-                    columns_[static_cast<std::size_t>(count_++)] = column;
+            for (unsigned number = 0; number < block_size * block_size; ++number) {
+                const int column = left_ + even_bits(number);
+                const int row = top_ + even_bits(number >> 1);
+                if (column < tile_.right && row < tile_.bottom && is_wanted(column, row)) {
+                    const auto at = static_cast<std::size_t>(count_++);
+                    columns_[at] = static_cast<Real>(part_.left + column);
+                    rows_[at] = static_cast<Real>(part_.top + row);
+                    pixels_[at] = (row - tile_.top) * (tile_.right - tile_.left) + (column - tile_.left);
                 }
             }
             if (count_ > 0) {
@@ -127,8 +134,14 @@ class PrimaryRays {
         }
     }
 
-    int masked_column(int lane) const {
-        return columns_[static_cast<std::size_t>(std::min(index_ + lane, count_ - 1))];
+    // Of a number of six bits.
+    static int even_bits(unsigned number) {
+        return static_cast<int>((number & 1U) | (number >> 1 & 2U) | (number >> 2 & 4U));
+    }
+
+    bool is_wanted(int column, int row) const {
+        return mask_ == nullptr || mask_[static_cast<std::size_t>(row) * static_cast<std::size_t>(part_.width) +
+                                         static_cast<std::size_t>(column)] != 0;
     }
 
     // Of a place in the grid from its pixel's top-left corner, across or down.
@@ -144,9 +157,13 @@ class PrimaryRays {
     const Lanes<Real> reach_;          // of the eye
     const unsigned char* const mask_;  // of the part, 1 where a pixel is wanted; null: all are
     const PicturePart part_;
-    std::array<int, tile_width> columns_;  // of the pixels that are wanted in the row, if not all are
-    int count_;                            // how many these are
-    int row_, index_ = 0;
+    // Of the block's pixels that are wanted, and with room for a whole group behind the last.
+    static constexpr std::size_t room = block_size * block_size + lane_count<Real>;
+    std::array<Real, room> columns_{}, rows_{};
+    std::array<typename Indices<Real>::Integer, room> pixels_{};
+    int count_ = 0;   // how many these are
+    int left_, top_;  // of the block
+    int index_ = 0;
     int sample_ = 0;  // how many of the places come before
 };
 

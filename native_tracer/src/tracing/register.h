@@ -81,6 +81,9 @@ struct Register<float> {
     static Reals max(Reals a, Reals b) { return _mm512_maskz_max_ps(0xFFFF, a, b); }
     static Reals abs(Reals a) { return (Reals)((Integers)a & INT32_MAX); }
     static Reals multiply_subtract(Reals a, Reals b, Reals c) { return _mm512_fmsub_ps(a, b, c); }
+    static Reals of_bytes(const unsigned char* from) {
+        return _mm512_cvtepi32_ps(_mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from))));
+    }
     static Reals sqrt(Reals a) { return _mm512_maskz_sqrt_ps(0xFFFF, a); }
     static Reals floor(Reals a) { return _mm512_maskz_roundscale_ps(0xFFFF, a, _MM_FROUND_FLOOR); }
 
@@ -167,6 +170,18 @@ struct Register : Vectors<Real> {
 #endif
         return a * b - c;
     }
+    // Of single precision.
+    static Reals of_bytes(const unsigned char* from) {
+#if defined(__AVX2__)
+        return _mm256_cvtepi32_ps(_mm256_cvtepu8_epi32(_mm_loadl_epi64(reinterpret_cast<const __m128i*>(from))));
+#else
+        Reals result;
+        for (int lane = 0; lane < lanes; ++lane) {
+            result[lane] = static_cast<Real>(from[lane]);
+        }
+        return result;
+#endif
+    }
     static Reals sqrt(Reals a) {
 #if defined(__AVX2__)
         if constexpr (sizeof(Real) == 8) {
@@ -246,6 +261,7 @@ struct Register<long double> {
     static Reals max(Reals a, Reals b) { return a > b ? a : b; }
     static Reals abs(Reals a) { return std::abs(a); }
     static Reals multiply_subtract(Reals a, Reals b, Reals c) { return a * b - c; }
+    static Reals of_bytes(const unsigned char* from) { return *from; }
     static Reals sqrt(Reals a) { return std::sqrt(a); }
     static Reals floor(Reals a) { return std::floor(a); }
 

@@ -4,8 +4,10 @@
 #pragma once
 
 #include <algorithm>
+#include <bit>
 #include <cmath>
 #include <cstddef>
+#include <cstdint>
 #include <numbers>
 #include <vector>
 
@@ -106,6 +108,46 @@ void merge(Mask<Real> mask, const Surface<Real>& other, Surface<Real>& surface) 
     }
 }
 
+// The nearest of the crossings that it is told of, in each lane.
+template <typename Real>
+struct Nearest {
+    Hits<Real> hits;
+    Lanes<Real> limit;                                           // nothing beyond matters
+    Lanes<Real> second = std::numeric_limits<Real>::infinity();  // distance of the next one
+    Mask<Real> close = Mask<Real>::none();                       // there may be a tie
+
+    [[gnu::always_inline]] bool meet(Indices<Real> object, const Crossing<Real>& crossing) {
+        const Mask<Real> nearer = (crossing.t < hits.t) | ((crossing.t <= hits.t) & (object < hits.object));
+        second = min(second, max(crossing.t, hits.t));
+        hits.t = select(nearer, crossing.t, hits.t);
+        hits.object = select(nearer, object, hits.object);
+        hits.primitive = select(nearer, crossing.primitive, hits.primitive);
+        hits.inside = select(nearer, crossing.inside, hits.inside);
+        limit = min(hits.t, limit);
+        return true;
+    }
+};
+
+// What is in the way of rays to a light.
+template <typename Real>
+struct Blocking {
+    Mask<Real> open;    // nothing is
+    Lanes<Real> limit;  // nothing beyond matters
+    Indices<Real> blocker = -1;
+    Mask<Real> close = Mask<Real>::none();  // there may be a tie
+
+    [[gnu::always_inline]] bool meet(Indices<Real> object, Mask<Real> crossing, Mask<Real> near) {
+        const Mask<Real> blocked = open & crossing;
+        blocker = select(blocked, object, blocker);
+        if (any(blocked & near)) [[unlikely]] {
+            close |= blocked & near;
+        }
+        open &= ~blocked;
+        limit = select(open, limit, Lanes<Real>(Real(-1)));
+        return any(open);
+    }
+};
+
 template <typename Real>
 struct Scene {
     Color<Real> ambient, background;
@@ -128,25 +170,19 @@ struct Scene {
     // The nearest hit of each ray; of objects at the same distance, the first of the file; for the rays in `wanted`,
     // which start where `view` was made from, if it is given.
     Hits<Real> nearest_hit(const Rays<Real>& rays, Mask<Real> wanted, const View<Real>* view) const {
-        Hits<Real> hits;
-        Lanes<Real> limit = select(wanted, hits.t, Lanes<Real>(Real(-1)));
-        Lanes<Real> second = hits.t;
-        Mask<Real> close = Mask<Real>::none();
+        Nearest<Real> nearest;
+        nearest.limit = select(wanted, nearest.hits.t, Lanes<Real>(Real(-1)));
         const auto may_hit = [&](const auto& sight) { return sight.may_be_hit(rays.direction); };
         for_each_crossing<Ties::found>(
-            rays, limit, close, view, may_hit, [&](const auto& shape, const Crossing<Real>& crossing) {
-                const Indices<Real> object = shape.object();
-                const Mask<Real> nearer = (crossing.t < hits.t) | ((crossing.t <= hits.t) & (object < hits.object));
-                second = min(second, max(crossing.t, hits.t));
-                hits.t = select(nearer, crossing.t, hits.t);
-                hits.object = select(nearer, object, hits.object);
-                hits.primitive = select(nearer, crossing.primitive, hits.primitive);
-                hits.inside = select(nearer, crossing.inside, hits.inside);
-                limit = min(hits.t, limit);
-                return true;
+            rays, nearest.limit, nearest.close, view, may_hit,
+            [&](const auto& shape, const Crossing<Real>& crossing) { return nearest.meet(shape.object(), crossing); },
+            [&](const BoxTest<Real>& test, Walks<Real>& walks) {
+                nearest = nearest_hit_alone(rays, test, walks, nearest);
             });
+        Hits<Real>& hits = nearest.hits;
+        Mask<Real>& close = nearest.close;
         const Lanes<Real> range = Lanes<Real>(most_blur<Real>) * (hits.t + rays.reach);
-        close |= (second - hits.t <= range) | (hits.t < range);
+        close |= (nearest.second - hits.t <= range) | (hits.t < range);
         close &= wanted;
         if (decides_ties<Real> && any(close)) [[unlikely]] {
             const Hits<Real> settled = nearest_hit_by_rules(rays, close);
@@ -161,9 +197,9 @@ struct Scene {
     // An object that is in the way of each ray before `distance`, or -1: nothing is; for the rays in `wanted`.
     Indices<Real> blocker(const Rays<Real>& rays, const Light<Real>& light, Lanes<Real> distance,
                           Mask<Real> wanted) const {
-        Mask<Real> close = Mask<Real>::none();
-        Indices<Real> blocker = find_blocker<Ties::found_in_the_way>(rays, light, distance, wanted, close, &light.view);
-        close &= wanted;
+        Blocking<Real> blocking = find_blocker<Ties::found_in_the_way>(rays, light, distance, wanted, &light.view);
+        Indices<Real>& blocker = blocking.blocker;
+        const Mask<Real> close = blocking.close & wanted;
         if (decides_ties<Real> && any(close)) [[unlikely]] {
             blocker = select(close, blocker_by_rules(rays, light, distance, close), blocker);
         }
@@ -181,22 +217,26 @@ struct Scene {
         const Lanes<Real> infinity = std::numeric_limits<Real>::infinity();
         Mask<Real> close = wanted;
         const auto anything = [](const auto&) { return true; };
+        const auto nobody = [](const BoxTest<Real>&, Walks<Real>&) {};
         Lanes<Real> nearest = infinity;
         Lanes<Real> error = Real(0);
         Lanes<Real> limit = select(wanted, infinity, nowhere);
-        for_each_crossing<Ties::decided>(rays, limit, close, nullptr, anything,
-                                         [&](const auto& shape, const Crossing<Real>& crossing) {
-                                             const Lanes<Real> its_error = distance_errors(shape, rays, crossing);
-                                             const Mask<Real> same = (crossing.t <= nearest) & (its_error > error);
-                                             error = select((crossing.t < nearest) | same, its_error, error);
-                                             nearest = min(crossing.t, nearest);
-                                             limit = min(nearest, limit);
-                                             return true;
-                                         });
+        for_each_crossing<Ties::decided>(
+            rays, limit, close, nullptr, anything,
+            [&](const auto& shape, const Crossing<Real>& crossing) {
+                const Lanes<Real> its_error = distance_errors(shape, rays, crossing);
+                const Mask<Real> same = (crossing.t <= nearest) & (its_error > error);
+                error = select((crossing.t < nearest) | same, its_error, error);
+                nearest = min(crossing.t, nearest);
+                limit = min(nearest, limit);
+                return true;
+            },
+            nobody);
         Hits<Real> hits;
         limit = select(wanted, nearest + Lanes<Real>(most_blur<Real>) * (nearest + rays.reach), nowhere);
         for_each_crossing<Ties::decided>(
-            rays, limit, close, nullptr, anything, [&](const auto& shape, const Crossing<Real>& crossing) {
+            rays, limit, close, nullptr, anything,
+            [&](const auto& shape, const Crossing<Real>& crossing) {
                 const Indices<Real> object = shape.object();
                 const Mask<Real> ties =
                     (crossing.t < infinity) & (crossing.t - nearest <= error + distance_errors(shape, rays, crossing));
@@ -206,7 +246,8 @@ struct Scene {
                 hits.primitive = select(first, crossing.primitive, hits.primitive);
                 hits.inside = select(first, crossing.inside, hits.inside);
                 return true;
-            });
+            },
+            nobody);
         hits.primitive = Indices<Real>::gather([&](int lane) {
             if (!wanted[lane] || hits.object[lane] < 0) {
                 return hits.primitive[lane];
@@ -222,33 +263,103 @@ struct Scene {
 
     [[gnu::noinline]] Indices<Real> blocker_by_rules(const Rays<Real>& rays, const Light<Real>& light,
                                                      Lanes<Real> distance, Mask<Real> wanted) const {
-        Mask<Real> close = wanted;
-        return find_blocker<Ties::decided>(rays, light, distance, wanted, close, nullptr);
+        return find_blocker<Ties::decided>(rays, light, distance, wanted, nullptr).blocker;
     }
 
     template <Ties ties>
-    [[gnu::always_inline]] Indices<Real> find_blocker(const Rays<Real>& rays, const Light<Real>& light,
-                                                      Lanes<Real> distance, Mask<Real> wanted, Mask<Real>& close,
-                                                      const View<Real>* view) const {
-        Indices<Real> blocker = -1;
-        Mask<Real> open = wanted;
+    [[gnu::always_inline]] Blocking<Real> find_blocker(const Rays<Real>& rays, const Light<Real>& light,
+                                                       Lanes<Real> distance, Mask<Real> wanted,
+                                                       const View<Real>* view) const {
+        Blocking<Real> blocking;
+        blocking.open = wanted;
         // Crossings beyond it do not matter.
-        const Lanes<Real> nowhere = Real(-1);
-        Lanes<Real> limit = select(open, distance, nowhere);
-        const auto may_block = [&](const auto& sight) { return sight.may_block(rays, distance, open); };
+        blocking.limit = select(wanted, distance, Lanes<Real>(Real(-1)));
+        const auto may_block = [&](const auto& sight) { return sight.may_block(rays, distance, blocking.open); };
         const Lanes<Real> range = Lanes<Real>(most_blur<Real>) * rays.reach;
         for_each_crossing<ties>(
-            rays, limit, close, view, may_block, [&](const auto& shape, const Crossing<Real>& crossing) {
-                const Mask<Real> blocked = open & (crossing.t < distance) & ~light.lies_at(crossing, rays.direction);
-                blocker = select(blocked, Indices<Real>(shape.object()), blocker);
-                if (any(blocked & (crossing.t < range))) [[unlikely]] {
-                    close |= blocked & (crossing.t < range);
-                }
-                open &= ~blocked;
-                limit = select(open, limit, nowhere);
-                return any(open);
+            rays, blocking.limit, blocking.close, view, may_block,
+            [&](const auto& shape, const Crossing<Real>& crossing) {
+                return blocking.meet(shape.object(), (crossing.t < distance) & ~light.lies_at(crossing, rays.direction),
+                                     crossing.t < range);
+            },
+            [&](const BoxTest<Real>& test, Walks<Real>& walks) {
+                blocking = blocker_alone(rays, light, distance, test, walks, blocking);
             });
-        return blocker;
+        return blocking;
+    }
+
+    // ---- Rays that have left their group ----------------------------------------------------------------------------
+
+    [[gnu::noinline]] Nearest<Real> nearest_hit_alone(const Rays<Real>& rays, const BoxTest<Real>& test,
+                                                      Walks<Real>& walks, Nearest<Real> nearest) const {
+        for_each_crossing_alone<Ties::found>(
+            rays, nearest.limit, nearest.close, test, walks,
+            [&](const auto& shape, const Crossing<Real>& crossing) { return nearest.meet(shape.object(), crossing); });
+        return nearest;
+    }
+
+    [[gnu::noinline]] Blocking<Real> blocker_alone(const Rays<Real>& rays, const Light<Real>& light,
+                                                   const Lanes<Real>& distance, const BoxTest<Real>& test,
+                                                   Walks<Real>& walks, Blocking<Real> blocking) const {
+        const Lanes<Real> range = Lanes<Real>(most_blur<Real>) * rays.reach;
+        for_each_crossing_alone<Ties::found_in_the_way>(
+            rays, blocking.limit, blocking.close, test, walks, [&](const auto& shape, const Crossing<Real>& crossing) {
+                return blocking.meet(shape.object(), (crossing.t < distance) & ~light.lies_at(crossing, rays.direction),
+                                     crossing.t < range);
+            });
+        return blocking;
+    }
+
+    // What for_each_crossing() does, for what is left to walks: spheres are met one to a lane.
+    template <Ties ties, typename Visit>
+    [[gnu::always_inline]] void for_each_crossing_alone(const Rays<Real>& rays, const Lanes<Real>& limit,
+                                                        Mask<Real>& close, const BoxTest<Real>& test,
+                                                        Walks<Real>& walks, Visit visit) const {
+        constexpr std::size_t spheres = 0;
+        const auto cross = [&](const auto& shape, Mask<Real> here) {
+            Crossing<Real> crossing;
+            Mask<Real> may_tie = Mask<Real>::none();
+            const Lanes<Real> its_limit = select(here, limit, Lanes<Real>(Real(-1)));
+            if (!shape.template intersect<ties == Ties::found>(at_rest(shape, rays), its_limit, crossing, may_tie)) {
+                return true;
+            }
+            close |= may_tie & here;
+            crossing.t = select(here, crossing.t, Lanes<Real>(std::numeric_limits<Real>::infinity()));
+            return visit(shape, crossing);
+        };
+        const auto meet = [&](unsigned lanes, const int* met) {
+            unsigned balls = 0;
+            for (unsigned left = lanes; left != 0; left &= left - 1) {
+                const int lane = std::countr_zero(left);
+                balls |= (WideTree<Real>::shape_at(met[lane]).kind == spheres ? 1U : 0U) << lane;
+            }
+            if (balls != 0) {
+                const auto ball = gather_balls<Real>(balls, [&](int lane) -> const auto& {
+                    return shapes.template at<Sphere<Real>>(WideTree<Real>::shape_at(met[lane])).ball();
+                });
+                Crossing<Real> crossing;
+                if (ball.intersect(rays, crossing) && !visit(ball, crossing)) {
+                    return false;
+                }
+            }
+            // Each other shape for all that have come to it.
+            for (unsigned left = lanes & ~balls; left != 0;) {
+                const int shape = met[std::countr_zero(left)];
+                const auto has_met = [&](int lane) { return (left >> lane & 1U) != 0 && met[lane] == shape; };
+                const Mask<Real> here = Mask<Real>::gather(has_met);
+                const auto cross_here = [&](const auto& its) { return cross(its, here); };
+                if (!shapes.visit(WideTree<Real>::shape_at(shape), cross_here)) {
+                    return false;
+                }
+                left &= ~here.bits();
+            }
+            return true;
+        };
+        tree.wide().walk(test, walks, limit, meet, [&](ShapeIndex shape) {
+            if (shape.kind == spheres) {
+                __builtin_prefetch(&shapes.template at<Sphere<Real>>(shape));
+            }
+        });
     }
 
     // How far the distances of crossings may be off.
@@ -271,10 +382,12 @@ struct Scene {
     // Calls visit(shape, crossing) for the shapes that some ray crosses before `limit`, and maybe others, until it
     // returns false: the one place that knows how the shapes are searched. visit may lower `limit`. Shapes outside the
     // tree are passed over where may_hit(sight) is false, if there is a view. Ties between a shape's primitives are
-    // decided, or the rays that have some are added to `close`.
-    template <Ties ties, typename MayHit, typename Visit>
+    // decided, or the rays that have some are added to `close`; and then none leaves its group. Else go_on(test, walks)
+    // is to do the same for what those that have left may cross.
+    template <Ties ties, typename MayHit, typename Visit, typename GoOn>
     [[gnu::always_inline]] void for_each_crossing(const Rays<Real>& rays, const Lanes<Real>& limit, Mask<Real>& close,
-                                                  const View<Real>* view, MayHit may_hit, Visit visit) const {
+                                                  const View<Real>* view, MayHit may_hit, Visit visit,
+                                                  GoOn go_on) const {
         const auto cross = [&](const auto& shape) __attribute__((always_inline)) {
             Crossing<Real> crossing;  // of its own, so that it stays in registers but for calls that need it elsewhere
             const Rays<Real>& resting = at_rest(shape, rays);
@@ -288,10 +401,18 @@ struct Scene {
         };
         const auto cross_if_in_sight = [&](const auto& shape, const auto& sight)
                                            __attribute__((always_inline)) { return !may_hit(sight) || cross(shape); };
-        if (view ? shapes.for_each(apart, *view, cross_if_in_sight) : shapes.for_each(apart, cross)) {
-            tree.for_each_leaf(rays, limit, [&](const typename Tree<Real>::Leaf& leaf) __attribute__((always_inline)) {
+        if (!(view ? shapes.for_each(apart, *view, cross_if_in_sight) : shapes.for_each(apart, cross)) ||
+            tree.empty()) {
+            return;
+        }
+        const BoxTest<Real> test = tree.test(rays);
+        Walks<Real> walks;
+        const bool unfinished = tree.template for_each_leaf<ties != Ties::decided>(
+            rays, test, limit, walks, [&](const typename Tree<Real>::Leaf& leaf) __attribute__((always_inline)) {
                 return shapes.for_each(leaf, cross);
             });
+        if (unfinished && walks.lanes() != 0) {
+            go_on(test, walks);
         }
     }
 
@@ -364,6 +485,7 @@ void Scene<Real>::add_shapes(const SceneDescription& description, const SearchPl
             tree.put_leaf(i, last);
         }
     }
+    tree.finish(plan, [&](std::uint32_t item) { return objects[item].shape; });
 }
 
 template <typename Real>

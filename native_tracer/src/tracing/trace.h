@@ -126,7 +126,7 @@ bool Tracer<Real, Observer>::trace(PrimaryRays primary_rays, Color<Sum>* sums, R
     }
     while (!stop.load(std::memory_order_relaxed)) {
         if (reflected_.size() + transmitted_.size() < batch_size && !primary_rays.done()) {
-            // Whole rows of pixels, for where a row is cut depends on the number of lanes.
+            // Whole blocks of pixels, for where one is cut depends on the number of lanes.
             std::size_t traced = 0;
             do {
                 Group<Real> group = primary_rays.next();
@@ -138,7 +138,7 @@ bool Tracer<Real, Observer>::trace(PrimaryRays primary_rays, Color<Sum>* sums, R
                 observer_.primary(group);
                 trace_group(group, &scene_.eye_view);
                 traced += static_cast<std::size_t>(count(group.active));
-            } while (!primary_rays.done() && (traced < batch_size || !primary_rays.begins_row()));
+            } while (!primary_rays.done() && (traced < batch_size || !primary_rays.begins_block()));
             counts.primary += traced;
         } else if (reflected_.size() + transmitted_.size() > 0) {
             batch_.clear();
