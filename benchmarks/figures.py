@@ -1,7 +1,7 @@
 """Prints the figures of docs/figures.md: agreement of the renderers on every scene, why pixels disagree, speed, memory.
 
     python benchmarks/figures.py [memory] [agreement] [bytes] [classes] [speed] [samples] [sampled]
-                                 [adaptive]
+                                 [adaptive] [mixed]
 
 Times are medians of runs that take turns, so that a machine whose speed drifts is fair to all; they depend on the
 machine, their ratios much less. POV-Ray joins where it is installed.
@@ -74,6 +74,7 @@ def main() -> None:
         "samples": samples,
         "sampled": sampled,
         "adaptive": adaptive,
+        "mixed": mixed,
     }
     for name in sys.argv[1:] or parts:
         parts[name]()
@@ -253,6 +254,33 @@ def _sampled(file: Path) -> list[str]:
 def _disagreeing(scene: Scene, settings: Settings, one: Renderer, other: Renderer) -> int:
     pixels = (np.asarray(renderer.render(scene, settings).pixels) for renderer in (one, other))
     return compare_pixels(*pixels).disagreeing
+
+
+def mixed() -> None:
+    """Each scene at 400 x 300: what of it mixed precision draws in double, and what that costs on this machine."""
+    print("400 x 300: share of the pixels that mixed precision draws once more in double, pixels that differ from")
+    print(
+        f"native double by more than 1/255, and CPU time over that of Mitsuba's default, medians of {RUNS} runs in turn"
+    )
+    heads = ["", "in double", "wrong", "time over default's"]
+    print_table("mixed", heads, map(_mixed, sorted((ROOT / "scenes").glob("*.in"))))
+
+
+def _mixed(file: Path) -> list[str]:
+    scene, settings = load_scene(file), Settings(width=400, height=300)
+    renderers = {"default": MitsubaRenderer(), "mixed": METHODS["mitsuba-mixed"].renderer()}
+    picture = renderers["mixed"].render(scene, settings)
+    truth = np.asarray(NativeRenderer().render(scene, settings).pixels)
+    wrong = compare_pixels(truth, np.asarray(picture.pixels)).disagreeing
+    times = _interleaved({name: partial(_cpu_seconds, each, scene, settings) for name, each in renderers.items()})
+    default, its = (statistics.median(spent) for spent in times.values())
+    return [file.stem, f"{picture.statistics['drawn_in_double']:.2%}", str(wrong), f"{its / default:.2f}"]
+
+
+def _cpu_seconds(renderer: Renderer, scene: Scene, settings: Settings) -> float:
+    started = time.process_time()
+    renderer.render(scene, settings)
+    return time.process_time() - started
 
 
 def adaptive() -> None:

@@ -8,7 +8,6 @@ from dataclasses import replace
 import numpy as np
 import pytest
 from test_chart import scene as plain_scene  # noqa: F401 - a fixture
-from test_chart import whitted  # noqa: F401 - a fixture
 
 from converter.renderers.base import Rendering
 from converter.renderers.methods import METHODS

@@ -8,7 +8,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 from test_chart import scene as plain_scene  # noqa: F401 - a fixture
-from test_chart import whitted  # noqa: F401 - a fixture
 
 from converter.renderers.base import EffectUnavailable
 from converter.renderers.methods import METHODS, find_method
@@ -149,7 +148,7 @@ def test_the_picture_has_a_curve_a_method(tmp_path):
     assert files[2].read_bytes().startswith(b"\x89PNG")
 
 
-def test_chart_of_a_sampled_scene(whitted, tmp_path):  # noqa: F811
+def test_chart_of_a_sampled_scene(whitted, tmp_path):
     scene = tmp_path / "soft.in"
     scene.write_text(write_scene(PENUMBRA))
     options = ("--size", "24x18", "--samples", 16, "--methods", "native,native:points=independent", "--runs", 2)

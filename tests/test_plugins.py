@@ -323,6 +323,7 @@ HOST_DIVISIONS = {
     "intersection/shapes/polyhedron.py": {"contacts", "_normalised"},
     "intersection/shapes/quadric.py": {"_form", "_rows", "_anchor", "_contact"},
     "intersection/shapes/sphere.py": {"contacts"},
+    "integrators/doubts.py": {"share_in_double"},
     "integrators/pace.py": {"__init__", "rows", "samples", "passes", "launch"},
     "sampler.py": {"disc_point", "cone_direction", "_small_turn"},
     "trial.py": {"_memory"},

@@ -260,6 +260,14 @@ def _mitsuba_methods() -> Iterator[Method]:
     yield method("mitsuba-analytic", "surfaces in the kernel, in double: small scenes", intersections="analytic")
     yield method("mitsuba-analytic-float", "the same in single precision", intersections="analytic", precision="float")
     yield method("mitsuba-bvh", "surfaces and a hierarchy in the kernel, in double: large scenes", intersections="bvh")
+    yield Method(
+        "mitsuba-mixed",
+        "mitsuba",
+        "Mitsuba",
+        "single precision, and double where that cannot decide, or not bound its errors: for GPUs",
+        {"precision": "mixed"},
+        usual=False,
+    )
     yield method(
         "mitsuba-mesh", "Embree says which surface, the exact surface says where, in double", intersections="mesh"
     )

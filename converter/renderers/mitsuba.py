@@ -85,6 +85,7 @@ class MitsubaRenderer:
                 "intersections": integrator.intersections,
                 "precision": integrator.precision,
                 "pixels_too_deep": integrator.pixels_too_deep,
+                **_in_double(integrator),
             }
             whole = _whole_passes(integrator.sums, pixels.shape, all_passes, variant)
             return Rendering(pixels, width, height, seconds, statistics, whole)
@@ -142,6 +143,7 @@ class MitsubaRenderer:
                 "intersections": integrator.intersections,
                 "precision": integrator.precision,
                 "pixels_too_deep": max(*too_deep, integrator.pixels_too_deep),
+                **_in_double(integrator),
             }
             return Rendering(pixels, width, height, seconds, statistics)
 
@@ -248,6 +250,13 @@ def _whole_passes(sums: Any, shape: tuple[int, ...], passes: list[list[int]], va
     too_deep = np.asarray(sums.too_deep).astype(np.uint8)
     samples = sum(map(len, passes[: sums.passes]))
     return Passes(sums.passes, len(passes), colors, too_deep, {"variant": variant, "samples": samples})
+
+
+def _in_double(integrator: Any) -> dict[str, Any]:
+    """Of a picture in mixed precision, the share of what is drawn that is drawn in double."""
+    if integrator.precision != "mixed":
+        return {}
+    return {"drawn_in_double": 1.0 if integrator.precisions is None else integrator.precisions.share_in_double}
 
 
 def _comes_from_interrupt(error: BaseException | None) -> bool:

@@ -3,13 +3,14 @@
 import json
 from typing import Any, Literal
 
+from converter.analysis.cutoff import cutoff_bound
 from converter.scene.model import Scene
 from converter.scene.needs import SceneNeeds
 from converter.scene.settings import Settings
 from converter.to_mitsuba.lights import color
 
 Intersections = Literal["auto", "analytic", "bvh", "mesh", "offset", "ulp"]
-RayPrecision = Literal["double", "float"]
+RayPrecision = Literal["double", "float", "mixed"]
 
 
 def integrator(
@@ -39,5 +40,6 @@ def integrator(
         "highlights": needs.glossy,
         "intersections": intersections,
         "precision": precision,
+        **({"brightest": cutoff_bound(scene, settings).brightest} if precision == "mixed" else {}),
         **{name: {"type": "ref", "id": name} for name in materials},
     }

@@ -6,6 +6,7 @@ The integrator is a `whitted`. It keeps how many `pixels_too_deep` there are, an
 
 import math
 from collections.abc import Callable, Iterator
+from contextlib import nullcontext
 from dataclasses import dataclass
 from typing import Any
 
@@ -241,26 +242,48 @@ def _launched(
     while done < end:
         more = min(end - done, pace.samples(count))
         with pace.launch(count * more):
-            before = mi.Color3d(color), mi.Bool(too_deep)
             some = tables, done, done + more
-            color, too_deep, undecided = _add_samples(integrator, sensor, color, too_deep, pixel, *some)
-            pace.recorded()
-            dr.eval(color, too_deep, undecided)
-            dr.sync_thread()
-            if integrator.postpones_ties and dr.any(undecided):
-                # Once more, for the pixels that have some. Where there are ties there may be others: from now on they
-                # are decided at once, so that it is this launch alone that is recorded twice.
-                integrator.postpone_ties(False)
-                again = dr.compress(undecided)
-                drawn = dr.gather(mi.Color3d, before[0], again), dr.gather(mi.Bool, before[1], again)
-                decided = _add_samples(integrator, sensor, *drawn, dr.gather(mi.UInt32, pixel, again), *some)
-                dr.scatter(color, decided[0], again)
-                if integrator.depth_limited:
-                    dr.scatter(too_deep, decided[1], again)
-                dr.eval(color, too_deep)
-                dr.sync_thread()
+            single = integrator.precisions is not None and integrator.precisions.tries_single
+            color, too_deep = _launch(integrator, sensor, (color, too_deep), pixel, some, single, pace.recorded)
         done += more
         told(done)
+    return color, too_deep
+
+
+def _launch(
+    integrator: Any,
+    sensor: Any,
+    drawn: tuple[Any, Any],
+    pixel: Any,
+    some: Any,
+    single: bool,
+    recorded: Callable[[], None] = lambda: None,
+) -> tuple[Any, Any]:
+    """Add `some` samples to what is `drawn` of pixels, in single precision or in double, there without the rules for
+    ties if they are postponed; and once more, in double or by the rules, to the pixels that are left undecided.
+    """
+    with integrator.precisions.single() if single else nullcontext():
+        # Copies; of what is not limited False, which no loop carries.
+        begun = mi.Color3d(drawn[0]), mi.Bool(drawn[1]) if integrator.depth_limited else False
+        color, too_deep, undecided = _add_samples(integrator, sensor, *begun, pixel, *some)
+        recorded()
+        dr.eval(color, too_deep, undecided)
+        dr.sync_thread()
+    again = dr.compress(undecided) if single or integrator.postpones_ties else mi.UInt32()
+    if single:
+        integrator.precisions.count(dr.width(color), dr.width(again))
+    elif dr.width(again) > 0:
+        # Where there are ties there may be others: from now on they are decided at once, so that it is this launch
+        # alone that is recorded twice.
+        integrator.postpone_ties(False)
+    if dr.width(again) > 0:
+        begun = dr.gather(mi.Color3d, drawn[0], again), dr.gather(mi.Bool, mi.Bool(drawn[1]), again)
+        decided = _launch(integrator, sensor, begun, dr.gather(mi.UInt32, pixel, again), some, False)
+        dr.scatter(color, decided[0], again)
+        if integrator.depth_limited:
+            dr.scatter(too_deep, decided[1], again)
+        dr.eval(color, too_deep)
+        dr.sync_thread()
     return color, too_deep
 
 
@@ -272,7 +295,7 @@ def _add_samples(
     undecided.
     """
     width = dr.width(color)
-    undecided = dr.zeros(mi.Bool, width) if integrator.postpones_ties else False
+    undecided = dr.zeros(mi.Bool, width) if integrator.leaves_undecided else False
     corner = _corners(sensor.film(), pixel)
     key = integrator.pixel_key(corner)
     offsets, numbers = tables

@@ -33,7 +33,8 @@ class Finish:
 @dataclass
 class Illumination:
     """What a light adds at a hit: n . l, the attenuation, the object in its way or NOTHING, the two terms (Color3), and
-    whether the shadow ray came close to a tie that nobody has decided.
+    whether the shadow ray came close to a tie that nobody has decided; or, where all is bounded, by how much the terms
+    may be off (Float).
     """
 
     cosine: Any
@@ -58,6 +59,7 @@ class Materials:
         self._texture = column(mi.UInt32, [texture_row[id(bsdf.pigment)] for bsdf in bsdfs])
         self._colors = [_color_function(texture) for texture in textures.values()]
         self._cells = [_cell_function(texture) for texture in textures.values()]
+        self._differences = [_difference_function(texture) for texture in textures.values()]
         self.has_edges = any(hasattr(t, "color_at") and t.is_spatially_varying() for t in textures.values())
         """Whether a pigment's colour changes from one point to the next, so that it matters how far points are off."""
         self.spread = any(bsdf.cone[0] > 0 for bsdf in finishes.values())
@@ -82,6 +84,17 @@ class Materials:
         texture = dr.gather(mi.UInt32, self._texture, index, active)
         return self._types.Color3(dr.switch(texture, self._colors, p, errors))
 
+    def unlike(self, index: Any, p: Any, errors: Any, active: Any) -> Any:
+        """By how much a channel of an object's pigment may differ (Float) from that at a position (Point3) whose
+        coordinates are off by less than `errors` (Vector3).
+        """
+        if not self.has_edges:
+            return self._types.Float(0)
+        if len(self._differences) == 1:
+            return self._types.Float(self._differences[0](p, errors))
+        texture = dr.gather(mi.UInt32, self._texture, index, active)
+        return self._types.Float(dr.switch(texture, self._differences, p, errors))
+
     def cell(self, index: Any, p: Any, errors: Any, active: Any) -> Any:
         """A word (UInt32) for the piece of an object's pigment at a position, such as a checker's cube."""
         if not self._cells:
@@ -94,6 +107,10 @@ class Materials:
 
 def _cell_function(texture: Any) -> Any:
     return getattr(texture, "cell_at", lambda p, _: dr.zeros(mi.UInt32, dr.width(p)))
+
+
+def _difference_function(texture: Any) -> Any:
+    return getattr(texture, "unlike_at", lambda p, _: dr.zeros(mi.Float64, dr.width(p)))
 
 
 def _color_function(texture: Any) -> Any:

@@ -1,5 +1,6 @@
 """Recursive ray tracing after Whitted, with the course's shading model, in double precision."""
 
+import math
 from contextlib import contextmanager
 from dataclasses import replace
 from typing import Any
@@ -10,6 +11,7 @@ import numpy as np
 
 from mitsuba_plugins import sampler as samples
 from mitsuba_plugins.arithmetic import quotient
+from mitsuba_plugins.integrators.doubts import MOST_DOUBT, Precisions, bounds_hold, cutoff_doubt, light_doubt
 from mitsuba_plugins.integrators.pictures import PassSums, bands, block
 from mitsuba_plugins.integrators.signature import hit_word, shadow_word
 from mitsuba_plugins.integrators.stack import RayStack
@@ -21,7 +23,7 @@ from mitsuba_plugins.intersection.contacts import Contacts, EyeContact, LightCon
 from mitsuba_plugins.intersection.geometry import parse_geometry
 from mitsuba_plugins.intersection.interactions import MitsubaSurfaces
 from mitsuba_plugins.intersection.mesh import MeshSurfaces
-from mitsuba_plugins.intersection.primitives import Primitives
+from mitsuba_plugins.intersection.primitives import Primitives, pieces
 from mitsuba_plugins.intersection.rays import (
     NOTHING,
     UPRIGHT,
@@ -38,6 +40,7 @@ from mitsuba_plugins.intersection.rays import (
     unit,
 )
 from mitsuba_plugins.intersection.rounding import (
+    bounds_all,
     camera_errors,
     coordinate_errors,
     decides_ties,
@@ -129,8 +132,14 @@ class Whitted(mi.SamplingIntegrator):
 
      * - precision
        - |string|
-       - ``double`` or ``float``: of rays and intersections; ``offset`` and ``ulp`` have ``float`` only
-         (Default: double)
+       - ``double`` or ``float``: of rays and intersections; ``offset`` and ``ulp`` have ``float`` only; ``mixed``:
+         single, with bounds of all its errors, and once more in double what these leave undecided, with ``analytic``
+         and ``bvh`` only (Default: double)
+
+     * - brightest
+       - |float|
+       - Largest channel that a ray can bring with all that follow from it, which ``mixed`` takes for what it does not
+         know of a ray (Default: infinity)
 
     The scene's shapes are needed for ``mesh``, ``offset`` and ``ulp`` only. Every light is an ``attenuated_point``.
     Switching off what a scene does not need makes it faster and changes nothing else. In double precision rays keep
@@ -163,11 +172,13 @@ class Whitted(mi.SamplingIntegrator):
         if self.moves and self.intersections not in ("analytic", "bvh"):
             raise ValueError(f"whitted: 'geometry' moves objects, and the shapes of '{self.intersections}' stand still")
         self.precision = props.get("precision", "double")
-        if self.precision not in ("double", "float"):
-            raise ValueError(f"whitted: precision is double or float, not '{self.precision}'")
+        if self.precision not in ("double", "float", "mixed"):
+            raise ValueError(f"whitted: precision is double, float or mixed, not '{self.precision}'")
+        if self.precision == "mixed" and self.intersections not in ("analytic", "bvh"):
+            raise ValueError(f"whitted: precision mixed is for analytic and bvh, not for '{self.intersections}'")
         if self.intersections in ("offset", "ulp"):
             self.precision = "float"
-        self.types = real(self.precision)
+        self.types = real("float" if self.precision == "float" else "double")
         self.cutoff = self.types.Float(props.get("cutoff", 1 / 512))
         dr.make_opaque(self.ambient, self.background, self.max_depth, self.cutoff)
         self.reflection = props.get("reflection", True)
@@ -176,6 +187,8 @@ class Whitted(mi.SamplingIntegrator):
         self.shadows = props.get("shadows", True)
         self.highlights = props.get("highlights", True)
         self.stack_size = max(1, props.get("waiting", props.get("max_depth", 16)))
+        self._brightest = mi.Float(min(props.get("brightest", math.inf), 2.0**100))
+        dr.make_opaque(self._brightest)
         self.depth_limited = props.get("depth_limited", False)
         self.seed = props.get("seed", 0)
         self.points = props.get("points", "stratified")
@@ -183,6 +196,7 @@ class Whitted(mi.SamplingIntegrator):
             raise ValueError(f"whitted: points is stratified or independent, not '{self.points}'")
         self.signing = False
         self.pixels_too_deep = 0
+        self.precisions: Precisions | None = None
         self.sums: PassSums | None = None
         self._tracer: Any = None
         self._eye_contact: EyeContact | None = None
@@ -201,37 +215,66 @@ class Whitted(mi.SamplingIntegrator):
 
         Let go of at the end: it may hold the scene, which holds this integrator, and such circles are never freed.
         """
-        primitives = Primitives(self.types, self.surfaces)
-        self.first_primitives = primitives.first
-        self._pieces = column(mi.UInt32, primitives.pieces) if least_weight is not None else None
-        # These, too, are read anew each time: they are what mitsuba.traverse lets a user change.
-        self._materials = Materials(self.types, [self._bsdfs.by_name[surface.material] for surface in self.surfaces])
-        self._lights = Lights(self.types, scene.emitters())
+        contacts = Contacts(self.surfaces)
+        self._pieces = column(mi.UInt32, pieces(self.surfaces)) if least_weight is not None else None
+        self.signing = least_weight is not None
+        self._least_weight = dr.opaque(self.types.Float, least_weight) if self.signing else None
+        self.__dict__.update(self._laid_out(self.types, scene, sensor, contacts))
         self.light_count = self._lights.count
         self._soft_shadows = self.shadows and bool(self._lights.radii.any())
         self._spreads = self._materials.spread and (self.reflection or self.refraction)
         self._has_lens = getattr(sensor, "has_lens", False)
-        self.signing = least_weight is not None
-        self._least_weight = dr.opaque(self.types.Float, least_weight) if self.signing else None
         # Where signatures are made, rays have paths.
         self.sampled = self.moves or self._soft_shadows or self._spreads or self._has_lens or self.signing
-        contacts = Contacts(self.surfaces)
-        self._light_contacts = LightContacts(self.types, contacts, self._lights.positions, self._lights.radii)
-        on_something = hasattr(sensor, "eye") and not self._has_lens
-        self._eye_contact = EyeContact(self.types, contacts, np.ravel(sensor.eye)) if on_something else None
-        self._errors_of_primary_rays = camera_errors(self.types, sensor)
-        if self.intersections == "analytic":
-            self._tracer = AnalyticSurfaces(self.types, self.surfaces, primitives, self._light_contacts)
-        elif self.intersections == "bvh":
-            self._tracer = BvhSurfaces(self.types, self.surfaces, primitives, self._light_contacts)
-        elif self.intersections == "mesh":
-            self._tracer = MeshSurfaces(self.types, scene, self.surfaces, primitives, self._light_contacts)
-        else:
-            self._tracer = MitsubaSurfaces(scene, self.surfaces, primitives, self.intersections)
+        self.precisions = None
+        if self._fits_single():
+            self.precisions = Precisions(self, lambda: self._laid_out(real("float"), scene, sensor, contacts))
         try:
             yield
         finally:
             self._tracer = None
+            if self.precisions is not None:
+                self.precisions.forget()
+
+    def _laid_out(self, types, scene, sensor, contacts):
+        """What there is once for each precision: attributes, by their names."""
+        primitives = Primitives(types, self.surfaces)
+        # These, too, are read anew each time: they are what mitsuba.traverse lets a user change.
+        lights = Lights(types, scene.emitters())
+        at_lights = LightContacts(types, contacts, lights.positions, lights.radii)
+        on_something = hasattr(sensor, "eye") and not getattr(sensor, "has_lens", False)
+        tracer: Any
+        if self.intersections == "analytic":
+            tracer = AnalyticSurfaces(types, self.surfaces, primitives, at_lights)
+        elif self.intersections == "bvh":
+            tracer = BvhSurfaces(types, self.surfaces, primitives, at_lights)
+        elif self.intersections == "mesh":
+            tracer = MeshSurfaces(types, scene, self.surfaces, primitives, at_lights)
+        else:
+            tracer = MitsubaSurfaces(scene, self.surfaces, primitives, self.intersections)
+        return {
+            "types": types,
+            "cutoff": types.Float(self.cutoff),
+            "first_primitives": primitives.first,
+            "_materials": Materials(types, [self._bsdfs.by_name[surface.material] for surface in self.surfaces]),
+            "_lights": lights,
+            "_light_contacts": at_lights,
+            "_eye_contact": EyeContact(types, contacts, np.ravel(sensor.eye)) if on_something else None,
+            "_errors_of_primary_rays": camera_errors(types, sensor),
+            "_tracer": tracer,
+        }
+
+    def _fits_single(self):
+        """Whether all errors of single precision are bounded; not where anything is sampled, nor of rays that start on
+        a surface.
+        """
+        on_something = self._eye_contact is not None and self._eye_contact.exists
+        return self.precision == "mixed" and not self.sampled and not on_something and bounds_hold(self.surfaces)
+
+    @property
+    def leaves_undecided(self):
+        """Whether `trace` leaves trees of rays undecided, and tells which."""
+        return self.postpones_ties or bounds_all(self.types.Float)
 
     @property
     def postpones_ties(self):
@@ -240,7 +283,7 @@ class Whitted(mi.SamplingIntegrator):
 
     def postpone_ties(self, postpones):
         """Let `trace` do so, where it would decide ties: the code by which it does slows down the kernel."""
-        self._tracer.postpones_ties = postpones and self._tracer.finds_ties and self.precision == "double"
+        self._tracer.postpones_ties = postpones and self._tracer.finds_ties and self.precision != "float"
 
     # ------------------------------------------------------------------ one ray
 
@@ -261,16 +304,21 @@ class Whitted(mi.SamplingIntegrator):
 
     def _errors(self, ray: Ray, hit: Hit):
         """How far the coordinates of a hit may be off, where a pigment asks."""
-        decides = decides_ties(hit.t) and self.intersections not in ("offset", "ulp")
+        decides = (decides_ties(hit.t) or bounds_all(hit.t)) and self.intersections not in ("offset", "ulp")
         if not decides or not self._materials.has_edges:
             return self.types.Vector3(0)
         return coordinate_errors(hit.p_at_rest, hit.n, ray.d, hit.t, hit.off)
 
-    def light(self, index, ray: Ray, hit: Hit, finish: Finish, color, active, sample, path) -> Illumination:
+    def light(
+        self, index, ray: Ray, hit: Hit, finish: Finish, color, active, sample, path, color_doubt=None
+    ) -> Illumination:
         """What one light, by its index, adds at a hit of a `sample`'s ray of that path."""
-        position, radius, emission, (a, b, c) = self._lights.get(index, active)
+        position, radius, emission, coefficients = self._lights.get(index, active)
+        a, b, c = coefficients
         to_light = position - hit.p
         error = hit.error
+        if bounds_all(error):
+            error = error + 4 * epsilon(error) * largest(position)
         if self._soft_shadows:
             square = sample.square(self.types.Float, path, samples.FIRST_LIGHT + index)
             to_light, error = _to_disc(to_light, position, radius, square, error)
@@ -280,12 +328,8 @@ class Whitted(mi.SamplingIntegrator):
         cosine = dr.dot(n, to_light)
         # A surface is not lit along itself, nor by a light at the very point.
         apart = distance > 8 * epsilon(distance) * largest(hit.p)
-        facing = (
-            active
-            & (cosine > least_spread(cosine))
-            & apart
-            & ~self._light_contacts.grazes(index, hit.primitive, active)
-        )
+        along_plane = self._light_contacts.grazes(index, hit.primitive, active)
+        facing = active & (cosine > least_spread(cosine)) & apart & ~along_plane
         blocker, undecided = self._tracer.blocker(hit, to_light, distance, error, index, facing)
         attenuation = a + distance * (b + distance * c)
         # Masked at the end: a light at the hit itself has no direction, and nothing times no number is no number.
@@ -293,13 +337,26 @@ class Whitted(mi.SamplingIntegrator):
         intensity = emission * quotient(1, attenuation)
         diffuse = (finish.kd * cosine * color * intensity) & lit
         specular = self.types.Color3(0)
-        if self.highlights:
-            specular = (finish.ks * self._highlight(ray, n, to_light, finish.alpha) * intensity) & lit
+        highlight = self._highlight_cosine(ray, n, to_light) if self.highlights else None
+        if highlight is not None:
+            # What is rounded above 1 has no bounds.
+            shine = power(dr.minimum(dr.maximum(highlight[0], 0), 1), finish.alpha)
+            specular = (finish.ks * shine * intensity) & lit
+        if bounds_all(distance):
+            doubt, most = light_doubt(
+                ray, hit, finish, color, color_doubt, cosine, distance, error, emission, coefficients, highlight
+            )
+            turns = active & ~along_plane & ~(dr.abs(cosine) > hit.lean + quotient(error, distance))
+            unsure = (facing & undecided) | turns | (active & ~(most < dr.inf))
+            undecided = dr.select(unsure, most, dr.select(lit, doubt, 0))
         return Illumination(cosine, attenuation, blocker, diffuse, specular, undecided)
 
-    def _highlight(self, ray: Ray, n, to_light, alpha):
-        cosine = dr.dot(n, unit(to_light - ray.d)) if self._materials.blinn else dr.dot(reflect(ray.d, n), to_light)
-        return power(dr.minimum(dr.maximum(cosine, 0), 1), alpha)  # what is rounded above 1 has no bounds
+    def _highlight_cosine(self, ray: Ray, n, to_light):
+        """The cosine whose power a highlight is, and by how much more than others an angle may be off there."""
+        if self._materials.blinn:
+            half = to_light - ray.d
+            return dr.dot(n, unit(half)), quotient(2, dr.norm(half)) if bounds_all(to_light) else 1
+        return dr.dot(reflect(ray.d, n), to_light), 1
 
     def reflected(self, ray: Ray, hit: Hit, finish: Finish, sample, path, active) -> Ray:
         """The ray that follows a `sample`'s ray of that path in the mirror direction."""
@@ -312,7 +369,7 @@ class Whitted(mi.SamplingIntegrator):
         """The refracted ray, or the mirrored one past the critical angle, and whether it is past."""
         eta = dr.select(hit.inside, quotient(1, finish.eta), finish.eta)
         n = dr.select(hit.inside, -hit.n, hit.n)
-        d, total, spread = refract(ray.d, n, eta, dr.minimum(ray.spread + hit.lean, most_blur(ray.spread)))
+        d, total, spread = refract(ray.d, n, eta, dr.minimum(ray.spread + hit.lean, most_blur(ray.spread)), hit.lean)
         spread = dr.select(total, mirrored_spread(ray, hit), spread)
         inside = hit.inside == total
         if self._spreads:
@@ -355,11 +412,13 @@ class Whitted(mi.SamplingIntegrator):
         too_deep = dr.zeros(mi.Bool, width) if self.depth_limited else False
         signature: Any = dr.zeros(mi.UInt32, width) if self.signing else None
         postpones = self.postpones_ties
-        undecided = dr.zeros(mi.Bool, width) if postpones else False
+        bounded = bounds_all(weight)
+        doubt: Any = dr.zeros(self.types.Float, width) if bounded else None
+        undecided = dr.zeros(mi.Bool, width) if postpones or bounded else False
         waiting: Any = dr.zeros(mi.UInt32, width) if self.branching else None
         stack = RayStack(self.types, self.stack_size if self.branching else 0, self.sampled)
         path: Any = dr.full(mi.UInt32, samples.PRIMARY_PATH, width) if self.sampled else None
-        while dr.hint(active, exclude=[self, sample, postpones]):
+        while dr.hint(active, exclude=[self, sample, postpones, bounded]):
             hit = self.closest(ray, active)
             finish, color = self.material(ray, hit)
             local, shadows, unsure = self.local_radiance(ray, hit, finish, color, sample, path)
@@ -369,6 +428,10 @@ class Whitted(mi.SamplingIntegrator):
                 signature += dr.select(hit.valid & (lit_weight >= self._least_weight), shadows, 0)
             if dr.hint(postpones, mode="scalar"):
                 undecided |= hit.undecided | unsure
+            if dr.hint(bounded, mode="scalar"):
+                # What is undecided is lost, with all that would follow.
+                doubt += weight * dr.select(hit.undecided, self._brightest, dr.select(hit.valid, unsure, 0))
+                local = dr.select(hit.undecided, 0, local)
             radiance += weight * dr.select(hit.valid, local, self.types.Color3(self.background))
 
             depth += 1
@@ -377,6 +440,11 @@ class Whitted(mi.SamplingIntegrator):
                 heavier = weight * dr.maximum(finish.kr, finish.kt)
                 too_deep |= hit.valid & (depth > self.max_depth) & (heavier > 0) & (heavier >= self.cutoff)
             active = mirrors | refracts
+            if dr.hint(bounded, mode="scalar"):
+                follows = hit.valid & (self.max_depth >= depth)
+                doubt += dr.select(follows, cutoff_doubt(weight, finish, self.cutoff, self._brightest), 0)
+                undecided |= ~(doubt < MOST_DOUBT)
+                active &= ~undecided
             if dr.hint(self.branching, mode="scalar"):
                 through = self.transmitted(ray, hit, finish, sample, path, refracts)[0]
                 mirrored = self.reflected(ray, hit, finish, sample, path, mirrors)
@@ -451,14 +519,25 @@ class Whitted(mi.SamplingIntegrator):
         """
         radiance = finish.ka * self.types.Color3(self.ambient) * color
         shadows: Any = dr.zeros(mi.UInt32, dr.width(ray.d)) if self.signing else None
-        unsure = dr.zeros(mi.Bool, dr.width(ray.d))
+        bounded = bounds_all(ray.t_min)
+        unsure: Any = dr.zeros(mi.Bool, dr.width(ray.d))
+        color_doubt: Any = None
+        if dr.hint(bounded, mode="scalar"):
+            color_doubt = self._materials.unlike(hit.object, hit.p_at_rest, self._errors(ray, hit), hit.valid)
+            unsure = dr.max(dr.abs(finish.ka * self.types.Color3(self.ambient))) * color_doubt
         if dr.hint(self.shadows, mode="scalar"):
             lit = hit.valid & (finish.kd + finish.ks > 0)
             light = dr.zeros(mi.UInt32, dr.width(ray.d))
-            while dr.hint(lit & (light < self.light_count), exclude=[self, ray, hit, finish, color, lit, sample, path]):
-                illumination = self.light(light, ray, hit, finish, color, lit, sample, path)
+            while dr.hint(
+                lit & (light < self.light_count),
+                exclude=[self, ray, hit, finish, color, lit, sample, path, bounded, color_doubt],
+            ):
+                illumination = self.light(light, ray, hit, finish, color, lit, sample, path, color_doubt)
                 radiance += illumination.diffuse + illumination.specular
-                unsure |= illumination.undecided
+                if dr.hint(bounded, mode="scalar"):
+                    unsure += illumination.undecided
+                else:
+                    unsure |= illumination.undecided
                 if dr.hint(self.signing, mode="scalar"):
                     shadows += dr.select(illumination.blocker != NOTHING, shadow_word(path, light), 0)
                 light += 1
@@ -516,6 +595,8 @@ class Whitted(mi.SamplingIntegrator):
                 spread = dr.minimum(spread, most_camera_blur(spread))
             else:
                 o, d = sensor.primary_ray(position)
+            if bounds_all(error):
+                error = error + epsilon(error) * self.types.Float(largest(o))
             ray = start_ray(self.types, o, d, error, spread)
             return ray if self._eye_contact is None else self._eye_contact.start(ray)
         size, offset = sensor.film().crop_size(), sensor.film().crop_offset()

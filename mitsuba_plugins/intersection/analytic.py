@@ -18,7 +18,7 @@ from mitsuba_plugins.intersection.motion import bring_back, motion_row
 from mitsuba_plugins.intersection.passages import Crossing
 from mitsuba_plugins.intersection.primitives import Primitives
 from mitsuba_plugins.intersection.rays import NOTHING, Ray, Real, largest
-from mitsuba_plugins.intersection.rounding import most_blur
+from mitsuba_plugins.intersection.rounding import bounds_all, most_blur
 from mitsuba_plugins.intersection.rows import ListedRows
 from mitsuba_plugins.intersection.surfaces import ExactSurfaces
 from mitsuba_plugins.syntax import syntax
@@ -39,6 +39,8 @@ class AnalyticSurfaces(ExactSurfaces):
 
     def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any, Any]:
         """As `ExactSurfaces` has it."""
+        if bounds_all(ray.t_min):
+            return self._find_doubtful(ray)
         width = dr.width(ray.d)
         t_best, t_second = (dr.full(self._types.Float, dr.inf, width) for _ in range(2))
         close = dr.full(mi.Bool, False, width)
@@ -62,6 +64,33 @@ class AnalyticSurfaces(ExactSurfaces):
         close |= (t_second - t_best <= near) | (t_best < near)
         return t_best, object_best, primitive_best, close
 
+    def _find_doubtful(self, ray: Ray) -> tuple[Any, Any, Any, Any]:
+        """`find_closest` with bounds: a tie is what is within these."""
+        width = dr.width(ray.d)
+        t_best, other = (dr.full(self._types.Float, dr.inf, width) for _ in range(2))
+        error = dr.zeros(self._types.Float, width)
+        close = dr.full(mi.Bool, False, width)
+        object_best, primitive_best = dr.full(mi.UInt32, NOTHING, width), dr.zeros(mi.UInt32, width)
+
+        def nearer_of(found: Any, index: int, crossing: Crossing, _: Any) -> Any:
+            t_best, error, other, close, object_best, primitive_best = found
+            t, hits = crossing.t, crossing.t < dr.inf
+            closer = t < t_best
+            farther = dr.select(closer, t_best - error, dr.select(hits, t - crossing.error, dr.inf))
+            return (
+                dr.select(closer, t, t_best),
+                dr.select(closer, crossing.error, error),
+                dr.select(farther > other, other, farther),
+                close | crossing.close,
+                dr.select(closer, mi.UInt32(index), object_best),
+                dr.select(closer, crossing.primitive, primitive_best),
+            )
+
+        found: Any = t_best, error, other, close, object_best, primitive_best
+        t_best, error, other, close, object_best, primitive_best = self._each(ray, True, found, nearer_of)
+        close |= (t_best < dr.inf) & ~(t_best + error < other)
+        return t_best, object_best, primitive_best, close
+
     @syntax
     def find_blocker(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any]:
         """As `ExactSurfaces` has it."""
@@ -73,8 +102,13 @@ class AnalyticSurfaces(ExactSurfaces):
                 found, close = blocked
                 t = crossing.t
                 blocks = t < distance
+                apart = True
                 if index in self.contacts.objects:
-                    blocks &= ~self.contacts.lies_at(light, crossing, ray.d, active)
+                    apart = ~self.contacts.lies_at(light, crossing, ray.d, active)
+                    blocks &= apart
+                if bounds_all(t):
+                    doubtful = crossing.close | (apart & (t < dr.inf) & ~(dr.abs(t - distance) > crossing.error))
+                    return dr.select(blocks & ~doubtful, mi.UInt32(index), found), close | doubtful
                 close |= crossing.close | (t < most_blur(t) * reach)
                 return dr.select(blocks, mi.UInt32(index), found), close
 

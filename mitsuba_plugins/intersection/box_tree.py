@@ -17,6 +17,7 @@ from mitsuba_plugins.intersection.coarse import unit_scale
 from mitsuba_plugins.intersection.columns import column
 from mitsuba_plugins.intersection.geometry import Box
 from mitsuba_plugins.intersection.rays import NOTHING, Ray, Real, largest
+from mitsuba_plugins.intersection.rounding import bounds_all
 from mitsuba_plugins.syntax import syntax
 from native_tracer.bvh import threaded_bvh
 
@@ -37,6 +38,7 @@ class Walk:
     leave: Any  # Vector3f, and last: so that boxes are wider by more than the roundings
     start: Any  # UInt32, the first node
     end: Any  # UInt32, behind the last node
+    blur: Any = None  # Vector3f, relative to distances, by how much more these may be wrong where all is bounded
 
 
 class BoxTree:
@@ -57,7 +59,12 @@ class BoxTree:
         slope = quotient(1, dr.select(d < 0, dr.minimum(d, -LEAST_SLOPE), dr.maximum(d, LEAST_SLOPE)))
         before, margin = -origin * slope, ((largest(origin) + 1) * MARGIN) * dr.abs(slope)
         start = _octant(d) * self._node_count
-        return Walk(slope, before - margin, before + margin, start, start + self._node_count)
+        blur = None
+        if bounds_all(ray.t_min):
+            margin += ((ray.t_min + ray.shift) * self._scale) * dr.abs(slope)
+            blur = 2 * ray.spread * dr.abs(slope)
+            blur = dr.select(blur < 1, blur, dr.inf)
+        return Walk(slope, before - margin, before + margin, start, start + self._node_count, blur)
 
     def limit(self, distance: Any) -> Any:
         """A distance as `next` takes it, and a little more."""
@@ -75,8 +82,12 @@ class BoxTree:
         while dr.hint(walking, exclude=[self, walk, limit, skipped]):
             corners = dr.gather(mi.Array4f, self._nodes, 2 * node, walking)
             rest = dr.gather(mi.Array4f, self._nodes, 2 * node + 1, walking)
-            near = dr.max(dr.fma(mi.Vector3f(corners.xyz), walk.slope, walk.enter))
-            far = dr.min(dr.fma(mi.Vector3f(corners.w, rest.x, rest.y), walk.slope, walk.leave))
+            enter = dr.fma(mi.Vector3f(corners.xyz), walk.slope, walk.enter)
+            leave = dr.fma(mi.Vector3f(corners.w, rest.x, rest.y), walk.slope, walk.leave)
+            if dr.hint(walk.blur is not None, mode="scalar"):
+                enter -= dr.abs(enter) * walk.blur
+                leave += dr.abs(leave) * walk.blur
+            near, far = dr.max(enter), dr.min(leave)
             # Of an origin beyond all measure these are NaN: then every box counts as met.
             meets = ~(near > dr.minimum(far, limit)) & ~(far < 0)
             item = dr.reinterpret_array(mi.UInt32, rest.w)

@@ -10,7 +10,7 @@ from mitsuba_plugins.intersection.contacts import LightContacts
 from mitsuba_plugins.intersection.geometry import Surface
 from mitsuba_plugins.intersection.primitives import Primitives
 from mitsuba_plugins.intersection.rays import NOTHING, Ray, Real, largest
-from mitsuba_plugins.intersection.rounding import most_blur
+from mitsuba_plugins.intersection.rounding import bounds_all, most_blur
 from mitsuba_plugins.intersection.surfaces import ExactSurfaces
 from mitsuba_plugins.syntax import syntax
 
@@ -25,11 +25,14 @@ class BvhSurfaces(ExactSurfaces):
 
     def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any, Any]:
         """As `ExactSurfaces` has it."""
+        if bounds_all(ray.t_min):
+            return self._doubtful_search(ray, self._types.Float(dr.inf), None, active)
         return self._search(ray, self._types.Float(dr.inf), None, active)
 
     def find_blocker(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any]:
         """As `ExactSurfaces` has it."""
-        _, found, _, close = self._search(ray, distance, light, active)
+        search = self._doubtful_search if bounds_all(distance) else self._search
+        _, found, _, close = search(ray, distance, light, active)
         return found, close
 
     @syntax
@@ -73,4 +76,49 @@ class BvhSurfaces(ExactSurfaces):
         if dr.hint(light is None, mode="scalar"):
             near = most_blur(t_best) * (t_best + reach)
             close |= (t_second - t_best <= near) | (t_best < near)
+        return t_best, object_best, primitive_best, close
+
+    @syntax
+    def _doubtful_search(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any, Any, Any]:
+        """`_search` with bounds: a tie is what is within these."""
+        width = dr.width(ray.d)
+        t_best = dr.zeros(self._types.Float, width) + distance
+        error = dr.zeros(self._types.Float, width)
+        other = dr.full(self._types.Float, dr.inf, width)  # the least that the distance of any other may be
+        object_best, primitive_best = dr.full(mi.UInt32, NOTHING, width), dr.zeros(mi.UInt32, width)
+        close = dr.full(mi.Bool, False, width)
+        reach = largest(ray.o)
+        limit = self._tree.limit(t_best)
+        walk = self._tree.walk(ray)
+        node = mi.UInt32(walk.start)
+        index = ray.object if self.primitives.any_concave else dr.select(ray.inside, ray.object, NOTHING)
+        searching = mi.Bool(active)
+        while dr.hint(searching, exclude=[self, ray, walk, distance, light, reach]):
+            tested = searching & (index != NOTHING)
+            if dr.hint(tested, exclude=[self, ray, distance, light, reach, walk, index, tested]):
+                crossing = self.primitives.intersect(ray, index, tested, reach, which_piece=light is None)
+                t = crossing.t
+                hits = tested & (t < dr.inf)
+                if dr.hint(light is None, mode="scalar"):
+                    close |= tested & crossing.close
+                    closer = hits & (t < t_best)
+                    farther = dr.select(closer, t_best - error, dr.select(hits, t - crossing.error, dr.inf))
+                    other = dr.select(farther > other, other, farther)
+                    error = dr.select(closer, crossing.error, error)
+                    t_best = dr.select(closer, t, t_best)
+                else:
+                    apart = hits & ~self.contacts.lies_at(light, crossing, ray.d, hits)
+                    doubtful = tested & crossing.close
+                    doubtful |= apart & ~(dr.abs(t - distance) > crossing.error)
+                    close |= doubtful
+                    closer = apart & (t < distance) & ~doubtful
+                object_best = dr.select(closer, index, object_best)
+                primitive_best = dr.select(closer, crossing.primitive, primitive_best)
+                limit = self._tree.limit(t_best + error)
+            if dr.hint(light is not None, mode="scalar"):
+                searching &= object_best == NOTHING
+            index, node = self._tree.next(walk, node, limit, ray.object, searching)
+            searching &= index != NOTHING
+        if dr.hint(light is None, mode="scalar"):
+            close |= (t_best < dr.inf) & ~(t_best + error < other)
         return t_best, object_best, primitive_best, close

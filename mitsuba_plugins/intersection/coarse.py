@@ -9,6 +9,7 @@ import drjit as dr
 import mitsuba as mi
 
 from mitsuba_plugins.intersection.rays import Ray, Real, largest
+from mitsuba_plugins.intersection.rounding import bounds_all
 from mitsuba_plugins.intersection.shapes.kind import Row
 
 ROOM = 2.0**-18
@@ -26,6 +27,7 @@ class CoarseRay:
     o: Any  # Point3f
     d: Any  # Vector3f
     room: Any  # Float, how much larger balls are
+    spread: Any  # Float, and the farther away the more
 
 
 class Balls:
@@ -45,13 +47,18 @@ class Balls:
     def ray(self, ray: Ray) -> CoarseRay:
         """A ray as the tests take it."""
         o = mi.Point3f(ray.o * self._scale)
-        return CoarseRay(o, mi.Vector3f(ray.d), (largest(o) + 1) * ROOM)
+        room = (largest(o) + 1) * ROOM
+        if bounds_all(ray.t_min):
+            room += (ray.t_min + ray.shift) * self._scale
+        return CoarseRay(o, mi.Vector3f(ray.d), room, ray.spread if bounds_all(ray.t_min) else None)
 
     def may_meet(self, k: int, ray: CoarseRay) -> Any:
         """Whether rays may meet ball k."""
         center, radius = self._balls[k]
         f, radius = mi.Vector3f(center - ray.o), radius + ray.room
         along = dr.dot(f, ray.d)
+        if ray.spread is not None:
+            radius += 2 * dr.abs(along) * ray.spread
         # Of numbers beyond all measure these are NaN: then the ball counts as met.
         return ~(dr.squared_norm(f - along * ray.d) > dr.square(radius)) & ~(along < -radius)
 

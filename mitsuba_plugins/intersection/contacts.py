@@ -180,6 +180,11 @@ class EyeContact:
         self._curvature = types.Float(sum(contact.curvature for contact in self._contacts))
         dr.make_opaque(self._normals, self._curvature)
 
+    @property
+    def exists(self) -> bool:
+        """Whether the eye is on anything."""
+        return bool(self._contacts)
+
     def start(self, ray: Ray) -> Ray:
         """A ray from the eye, with what it starts on."""
         if not self._contacts:

@@ -8,7 +8,7 @@ import drjit as dr
 import mitsuba as mi
 
 from mitsuba_plugins.intersection.rays import Ray
-from mitsuba_plugins.intersection.rounding import most_blur
+from mitsuba_plugins.intersection.rounding import bounds_all, most_blur
 from mitsuba_plugins.syntax import syntax
 
 
@@ -23,7 +23,9 @@ class Passage:
     meets: Any = True  # Bool, whether there are any
     inside_before: Any = False  # Bool, whether the line is inside before the near one, and so beyond the far one
     close: Any = False  # Bool, whether that was close to a tie
-    between: Any = None  # Float, if there are several planes from where it crosses one to where it crosses the next
+    between: Any = None
+    """If there are several planes from where it crosses one to where it crosses the next (Float); where all is bounded,
+    of whether it is the near crossing (Bool), how much that is more than the errors."""
     error: Callable[[Any, Any], Any] | None = None
     """Where ties are decided how far a distance may be off, of whether it is the near one (Bool) and itself (Float)."""
 
@@ -53,7 +55,15 @@ def first_crossing(passage: Passage, ray: Ray, own: Any, reach: Any, which_piece
     between = ray.inside if passage.inside_before is False else ray.inside != passage.inside_before
     t = dr.select(own, dr.select(between, dr.maximum(passage.far, 0), dr.inf), t)
     close = passage.close
-    if which_piece and passage.between is not None:
+    if bounds_all(t):
+        assert passage.error is not None
+        starts = mi.Bool(False)  # whether the ray may start at a crossing
+        for side, at in ((True, passage.near), (False, passage.far)):
+            starts |= ~(dr.abs(at) > passage.error(mi.Bool(side), at) + ray.shift)
+        close |= ~own & passage.meets & starts & ~dr.isnan(passage.near)
+        if which_piece and passage.between is not None:
+            close |= (t < dr.inf) & ~(passage.between(to_near) > 0)
+    elif which_piece and passage.between is not None:
         close |= (t < dr.inf) & (passage.between < most_blur(t) * (reach + t))
     return Crossing(
         t=t,

@@ -28,11 +28,8 @@ class Primitives:
         kinds: list[ShapeKind] = []
         self.first = []
         """The index of each object's first primitive."""
-        self.pieces: list[int] = []
-        """What number each primitive has among the smooth pieces of its object."""
         for surface in surfaces:
             self.first.append(len(rows))
-            self.pieces += _pieces(surface)
             rows.extend(surface.rows)
             kinds.extend(kind for kind, shape in surface.shapes for _ in shape.rows)
         self.types = types
@@ -139,6 +136,11 @@ class Primitives:
         if self.any_csg:
             result.n = dr.select(primitive == row, result.n, -result.n)
         return result
+
+
+def pieces(surfaces: list[Surface]) -> list[int]:
+    """What number each primitive has among the smooth pieces of its object."""
+    return [piece for surface in surfaces for piece in _pieces(surface)]
 
 
 def _pieces(surface: Surface) -> list[int]:

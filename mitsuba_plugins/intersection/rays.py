@@ -15,7 +15,7 @@ import drjit as dr
 import mitsuba as mi
 
 from mitsuba_plugins.arithmetic import quotient
-from mitsuba_plugins.intersection.rounding import epsilon, least_spread, most_blur
+from mitsuba_plugins.intersection.rounding import bounds_all, epsilon, least_spread, most_blur
 
 NOTHING = 0xFFFFFFFF
 """Object index of a ray that starts on no surface, and of a hit that is none."""
@@ -59,6 +59,7 @@ class Ray:
     t_min: Any  # Float, how far o may be off; a hit on anything but `object` is farther
     spread: Any  # Float, how far d may be off, see `rounding`
     time: Any = None  # Float from 0 to 1, where something moves
+    shift: Any = None  # Float, how far o may be off along the ray, and `t_min` is across it, where all is bounded
 
 
 @dataclass
@@ -103,8 +104,14 @@ def start_ray(types: Real, o: Any, d: Any, error: Any = 0, spread: Any = 0) -> R
         primitive=dr.full(mi.UInt32, NOTHING, width),
         inside=dr.full(mi.Bool, False, width),
         t_min=dr.zeros(types.Float, width) + error,
-        spread=dr.full(types.Float, least_spread(types.Float), width) + spread,
+        spread=dr.full(types.Float, _start_spread(types.Float), width) + spread,
+        shift=dr.zeros(types.Float, width) + error if bounds_all(types.Float) else None,
     )
+
+
+def _start_spread(number: Any) -> float:
+    """Of a direction that is rounded once where everything is bounded, and of its products with others."""
+    return 2 * epsilon(number) if bounds_all(number) else least_spread(number)
 
 
 def lanes(width: int) -> Any:
@@ -125,6 +132,8 @@ def spawn(hit: Hit, d: Any, inside: Any, spread: Any) -> Ray:
 def origin_error(p: Any, t: Any) -> Any:
     """A bound of the rounding error of a point that was found at distance `t` of its ray."""
     reach = largest(p) + t
+    if bounds_all(reach):
+        return reach * (3 * epsilon(reach))
     return reach * (ERROR_BOUND * dr.epsilon(reach))
 
 
@@ -154,12 +163,13 @@ def mirrored_spread(ray: Ray, hit: Hit) -> Any:
     return dr.minimum(ray.spread + 2 * hit.lean + least_spread(ray.spread), most_blur(ray.spread))
 
 
-def refract(d: Any, n: Any, eta: Any, error: Any = 0) -> tuple[Any, Any, Any]:
+def refract(d: Any, n: Any, eta: Any, error: Any = 0, lean: Any = 0) -> tuple[Any, Any, Any]:
     """Snell's law: direction behind a surface whose unit normal `n` is against `d`, whether reflection is total, and
     how far the direction may be off where it is not.
 
-    `eta` is the index on d's side over the index behind; direction and normal together may be off by `error`. Past the
-    critical angle the direction is the mirrored one; at that angle the ray is refracted along the surface.
+    `eta` is the index on d's side over the index behind; direction and normal together may be off by `error`, of
+    which the normal by `lean`. Past the critical angle the direction is the mirrored one; at that angle the ray is
+    refracted along the surface.
     """
     cosine = -dr.dot(d, n)
     # 1 - eta^2 (1 - cosine^2), without the difference of nearly equal numbers where eta is nearly 1.
@@ -172,6 +182,12 @@ def refract(d: Any, n: Any, eta: Any, error: Any = 0) -> tuple[Any, Any, Any]:
     total = ~((cosine2 >= 0) & (length > 0))  # of a ratio beyond all measure these may be no numbers, or 0
     # In the plane of incidence it is more near the critical angle; across it, it is not.
     spread = dr.minimum(2 * error * (1 + eta) + least_spread(cosine), most_blur(cosine))
+    if bounds_all(cosine):
+        # In the plane of incidence, where it is the most; at the critical angle infinite, so nothing is known beyond.
+        behind, least = dr.sqrt(dr.abs(cosine2)), dr.sqrt(dr.maximum(cosine2 - critical, 0))
+        turned = dr.abs(eta * cosine - behind) + (behind - least)
+        spread = quotient(eta * (error - lean) + turned * lean + least_spread(cosine) * (1 + eta), least)
+        spread = dr.select(least == 0, dr.inf, spread)
     return dr.select(total, reflect(d, n), through * quotient(1, length)), total, spread
 
 

@@ -1,5 +1,6 @@
 """What a ray meets: the first of the exact surfaces, and the point and the normal there."""
 
+from dataclasses import replace
 from typing import Any
 
 import drjit as dr
@@ -8,7 +9,7 @@ from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.intersection.contacts import LightContacts
 from mitsuba_plugins.intersection.primitives import Primitives
 from mitsuba_plugins.intersection.rays import NOTHING, Hit, Ray, largest, origin_error, shadow_spread, spawn
-from mitsuba_plugins.intersection.rounding import decides_ties, most_blur
+from mitsuba_plugins.intersection.rounding import bounds_all, decides_ties, least_spread, most_blur
 from mitsuba_plugins.intersection.ties import AllObjects, Candidates, Ties
 
 
@@ -31,8 +32,9 @@ class ExactSurfaces:
     def closest(self, ray: Ray, active: Any) -> Hit:
         """The first surface that a ray meets, the point moved onto it to shed the error along the normal."""
         t, index, primitive, close = self.find_closest(ray, active)
-        ties = self.finds_ties and decides_ties(t)
-        if ties and not self.postpones_ties:
+        bounded = bounds_all(t)
+        ties = bounded or (self.finds_ties and decides_ties(t))
+        if ties and not bounded and not self.postpones_ties:
             t, index, primitive = self._ties.closest(ray, t, index, primitive, active & close)
         valid = active & (index != NOTHING)
         moving, ray = ray, self.primitives.at_rest(ray, index, valid)
@@ -44,23 +46,44 @@ class ExactSurfaces:
         error = origin_error(p, t)
         if ties:
             # A ray that is off meets the surface farther off the more it slants.
-            along = quotient(off, dr.abs(dr.dot(n, ray.d)))
+            slope = dr.abs(dr.dot(n, ray.d))
+            along = quotient(off, slope)
+            if bounded:
+                along = quotient(off, slope - ray.spread)
+                bent = quotient(along, surface.radius * slope)
+                along += along * bent
+                off += off * bent
             error += dr.minimum(along, most_blur(t) * (largest(p) + t))
         lean = quotient(error, surface.radius)
-        undecided = active & close if ties and self.postpones_ties else False
+        undecided = active & close if ties and (bounded or self.postpones_ties) else False
+        if bounded:
+            # Which side the ray comes from, and whether what is known to first order is known at all.
+            lean += least_spread(lean)
+            grazes = ~(slope > 2 * (ray.spread + lean)) | ~(lean < 0.25) | ~(bent < 0.25)
+            undecided |= (active & ~(ray.spread < 0.25)) | (valid & grazes)
         hit = Hit(valid, t, index, primitive, p, n, inside, off, error, lean, undecided)
         return self.primitives.taken_along(hit, moving, valid)
 
     def spawn(self, hit: Hit, d: Any, inside: Any, spread: Any) -> Ray:
         """The ray that leaves `hit` in direction `d`, on the given side of the object."""
-        return spawn(hit, d, inside, spread)
+        ray = spawn(hit, d, inside, spread)
+        if bounds_all(spread):
+            # A mirror moves the line of a ray sideways by no more than that is off; a refracting surface by more where
+            # it makes a beam wider.
+            across = dr.maximum(hit.off, hit.error * dr.abs(dr.dot(hit.n, d)))
+            ray = replace(ray, t_min=across + origin_error(hit.p, 0), shift=hit.error)
+        return ray
 
     def blocker(self, hit: Hit, d: Any, distance: Any, error: Any, light: Any, active: Any) -> tuple[Any, Any]:
         """Some object between `hit` and a light at `distance` in direction `d`, on the side it was seen from, and
         whether that is undecided; these two ends of the way may be off by `error`.
         """
         ray = spawn(hit, d, hit.inside, shadow_spread(error, distance))
+        if bounds_all(distance):
+            ray.shift = hit.error
         found, close = self.find_blocker(ray, distance, light, active)
+        if bounds_all(distance):
+            return found, active & close & (found == NOTHING)
         if not self.finds_ties or not decides_ties(distance):
             return found, False
         if self.postpones_ties:

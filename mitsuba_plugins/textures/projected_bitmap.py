@@ -49,6 +49,35 @@ class ProjectedBitmap(mi.Texture):
         row = self._texel(self.to_r, p, errors, self.height)
         return mi.Color3d(dr.gather(mi.Color3f, self.texels, row * mi.UInt32(self.width) + column))
 
+    def unlike_at(self, p, errors):
+        """By how much a channel may differ (Float64) from the colour at a position whose coordinates are off by less
+        than `errors` (Vector3); infinite where these are as large as texels.
+        """
+        p, errors = mi.Vector3d(p), mi.Vector3d(errors)
+        (left, right), (top, bottom) = (
+            self._ends(projection, p, errors, count)
+            for projection, count in ((self.to_s, self.width), (self.to_r, self.height))
+        )
+        crosses = (left != right) | (top != bottom)
+        least, most = mi.Color3f(dr.inf), mi.Color3f(-dr.inf)
+        for row in (top, bottom):
+            for column in (left, right):
+                index = self._wrap(row, self.height) * mi.UInt32(self.width) + self._wrap(column, self.width)
+                color = dr.gather(mi.Color3f, self.texels, index, crosses)
+                least, most = dr.minimum(least, color), dr.maximum(most, color)
+        near = (right - left <= 1) & (bottom - top <= 1)
+        return dr.select(crosses, dr.select(near, mi.Float64(dr.max(most - least)), dr.inf), 0)
+
+    @classmethod
+    def _ends(cls, projection, p, errors, count):
+        """The first and the last texel, of those along one side, that a position may lie in."""
+        a, b, c, d = projection
+        position = (a * p.x + b * p.y + c * p.z + d) * count
+        error = (dr.abs(a) * errors.x + dr.abs(b) * errors.y + dr.abs(c) * errors.z) * count
+        # What is as near as double precision can tell, too.
+        error += 16 * epsilon(error) * (dr.abs(position) + dr.abs(d) * count)
+        return dr.trunc(position - error), dr.trunc(position + error)
+
     @classmethod
     def _texel(cls, projection, p, errors, count):
         a, b, c, d = projection

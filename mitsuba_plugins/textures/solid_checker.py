@@ -46,6 +46,13 @@ class SolidChecker(mi.Texture):
         half = (cell.x + cell.y + cell.z) * 0.5
         return dr.select(half == dr.floor(half), self.first, self.second)
 
+    def unlike_at(self, p, errors):
+        """By how much a channel may differ (Float64) from the colour at a position whose coordinates are off by less
+        than `errors` (Vector3).
+        """
+        crosses = dr.any(self._cube(p, errors) != self._cube(p, -errors))
+        return dr.select(crosses, dr.max(dr.abs(self.first - self.second)), 0)
+
     def cell_at(self, p, errors=0):
         """A word (UInt32) for the cube at a position: others near it have others."""
         cell = self._cube(p, errors)
@@ -55,7 +62,7 @@ class SolidChecker(mi.Texture):
 
     def _cube(self, p, errors):
         p = mi.Vector3d(p)
-        p = p + errors + dr.abs(p) * (2 * epsilon(p))
+        p = p + mi.Vector3d(errors) + dr.abs(p) * (2 * epsilon(p))
         return dr.floor(quotient(p, self.size))
 
     def eval(self, si, active=True):

@@ -11,7 +11,7 @@ import numpy as np
 from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.intersection.passages import Passage
 from mitsuba_plugins.intersection.rays import Ray, largest
-from mitsuba_plugins.intersection.rounding import decides_ties, epsilon, most_blur
+from mitsuba_plugins.intersection.rounding import bounds_all, decides_ties, epsilon, most_blur
 from mitsuba_plugins.intersection.shapes.kind import Contact, Row, Rows, Shape, SurfacePoint
 from native_tracer.incidence import surfaces_at, within
 
@@ -87,6 +87,8 @@ def passage(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
 
     Haines, Fast Ray-Convex Polyhedron Intersection, Graphics Gems II, 1991.
     """
+    if bounds_all(ray.t_min):
+        return _doubtful_passage(rows, ray, own, reach)
 
     def narrow(span: _Span, plane: Any, row: Any) -> _Span:
         """The span in one more half-space, n . p + offset <= 0."""
@@ -127,6 +129,103 @@ def passage(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
         meets=(span.enter <= span.leave) & ~(span.above > in_plane),
         close=((dr.abs(span.above) <= in_plane) | at_edge) & (~own | ray.inside),
         between=span.between,
+    )
+
+
+@dataclass
+class _Doubtful:
+    """A span whose ends are known within bounds."""
+
+    enter: Any  # Float, the last crossing of a plane that enters
+    enter_error: Any  # Float
+    enter_plane: Any  # UInt32
+    enter_least: Any  # Float, the least that the last one may be
+    enter_other: Any  # Float, the most that any of the others may be
+    leave: Any
+    leave_error: Any
+    leave_plane: Any
+    leave_most: Any
+    leave_other: Any
+    sideways: Any  # Float, before which planes that the ray may run along are not crossed
+    outside: Any  # Bool, whether it runs outside of one
+
+
+def _doubtful_passage(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
+    """The same with bounds: a tie is what is within these."""
+    kind = type(ray.t_min)
+
+    def narrow(span: _Doubtful, plane: Any, row: Any) -> _Doubtful:
+        n = type(ray.d)(row.xyz)
+        error = ray.t_min + surface_error(row, reach)
+        slope, height = dr.dot(n, ray.d), dr.dot(n, ray.o) + row.w
+        t = -quotient(height, slope)
+        t_error = 1.5 * quotient(error + dr.abs(t) * ray.spread, dr.abs(slope))
+        other = plane != ray.primitive
+        enters, leaves = other & (slope < -4 * ray.spread), other & (slope > 4 * ray.spread)
+        runs = other & ~enters & ~leaves
+        last, first = enters & (t > span.enter), leaves & (t < span.leave)
+        not_last = dr.select(last, span.enter + span.enter_error, dr.select(enters, t + t_error, -dr.inf))
+        not_first = dr.select(first, span.leave - span.leave_error, dr.select(leaves, t - t_error, dr.inf))
+        free = quotient(dr.abs(height) - error, 5 * ray.spread)
+        return _Doubtful(
+            enter=dr.select(last, t, span.enter),
+            enter_error=dr.select(last, t_error, span.enter_error),
+            enter_plane=dr.select(last, plane, span.enter_plane),
+            enter_least=dr.select(enters & (t - t_error > span.enter_least), t - t_error, span.enter_least),
+            enter_other=dr.maximum(span.enter_other, not_last),
+            leave=dr.select(first, t, span.leave),
+            leave_error=dr.select(first, t_error, span.leave_error),
+            leave_plane=dr.select(first, plane, span.leave_plane),
+            leave_most=dr.select(leaves & (t + t_error < span.leave_most), t + t_error, span.leave_most),
+            leave_other=dr.minimum(span.leave_other, not_first),
+            sideways=dr.select(runs & ~(free > span.sideways), free, span.sideways),
+            outside=span.outside | (runs & (height > 0)),
+        )
+
+    infinity = dr.full(kind, dr.inf, rows.width)
+    zero, nobody = dr.zeros(kind, rows.width), dr.zeros(mi.UInt32, rows.width)
+    start = _Doubtful(
+        -infinity,
+        zero,
+        nobody,
+        -infinity,
+        -infinity,
+        infinity,
+        zero,
+        nobody,
+        infinity,
+        infinity,
+        infinity,
+        mi.Bool(zero > 0),
+    )
+    span = rows.fold(narrow, start)
+    enter_most = dr.maximum(span.enter + span.enter_error, span.enter_other)
+    leave_least = dr.minimum(span.leave - span.leave_error, span.leave_other)
+    may_meet = ~(span.enter_least > span.leave_most) & ~(span.leave_most < -ray.shift) & (~own | ray.inside)
+    surely = (enter_most < leave_least) & ((span.leave_most < span.sideways) | (span.sideways == dr.inf))
+
+    def error(to_near: Any, _: Any) -> Any:
+        most = dr.select(to_near, enter_most - span.enter, span.leave - leave_least)
+        least = dr.select(to_near, span.enter - span.enter_least, span.leave_most - span.leave)
+        return dr.select(dr.isfinite(dr.select(to_near, span.enter, span.leave)), dr.maximum(most, least), 0)
+
+    def between(to_near: Any) -> Any:
+        """Where negative there are planes of which either may be the one that is crossed."""
+        return dr.select(
+            to_near,
+            span.enter - span.enter_error - span.enter_other,
+            span.leave_other - span.leave - span.leave_error,
+        )
+
+    return Passage(
+        near=span.enter,
+        far=span.leave,
+        near_primitive=span.enter_plane,
+        far_primitive=span.leave_plane,
+        meets=(span.enter <= span.leave) & ~span.outside,
+        close=may_meet & ~surely,
+        between=between,
+        error=error,
     )
 
 
@@ -183,6 +282,9 @@ def surface_error(row: Any, reach: Any) -> Any:
     number = epsilon(offset)
     along_axis = dr.select(offset == dr.floor(offset), 0, number * dr.abs(offset))
     slanting = 4 * number * (dr.abs(offset) + reach)
+    if bounds_all(offset):
+        along_axis = number * dr.abs(offset)
+        return dr.select(dr.abs(row.x) + dr.abs(row.y) + dr.abs(row.z) == 1, along_axis, slanting)
     return dr.select(largest(row) == 1, along_axis, slanting)
 
 

@@ -29,7 +29,7 @@ import numpy as np
 from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.intersection.passages import Passage
 from mitsuba_plugins.intersection.rays import Ray, largest
-from mitsuba_plugins.intersection.rounding import epsilon, input_error, least_spread, most_of_radius
+from mitsuba_plugins.intersection.rounding import bounds_all, epsilon, input_error, least_spread, most_of_radius
 from mitsuba_plugins.intersection.shapes.kind import Contact, Row, Rows, Shape, SurfacePoint
 from native_tracer.incidence import surfaces_at
 
@@ -284,6 +284,8 @@ def passage(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
     line = _line(quadric, ray)
     discriminant = line.discriminant
     near, far = line.roots(discriminant)
+    if bounds_all(discriminant):
+        return _doubtful_passage(rows, quadric, line, ray, own, near, far)
     return Passage(
         near=near,
         far=dr.select(own, line.other_root(), far),
@@ -291,6 +293,45 @@ def passage(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
         far_primitive=rows.primitive(),
         inside_before=line.inside_before(),
         close=(dr.abs(discriminant) <= _most_touching(quadric, line, reach)) & ~own,
+    )
+
+
+def _doubtful_passage(rows: Rows, quadric: _Quadric, line: _Line, ray: Ray, own: Any, near: Any, far: Any) -> Passage:
+    """The same with bounds: a tie is what is within these."""
+    bend, number = quadric.bend(), epsilon(ray.t_min)
+    at_start = ray.t_min + 2 * number * largest(quadric.anchor)
+    start_error = at_start * 2 * dr.norm(quadric.times(line.start) + quadric.g)
+
+    def value_error(q: Any, half_gradient: Any, t: Any) -> Any:
+        """How far the quadric's value may be off at a distance."""
+        off = at_start + dr.abs(t) * ray.spread
+        slope = dr.norm(half_gradient) + 4 * number * (bend * dr.norm(q) + dr.norm(quadric.g))
+        return off * (2 * slope + bend * off) + 4 * quadric.error(q)
+
+    def distance_error(_: Any, t: Any) -> Any:
+        along = t - line.middle
+        half_gradient = line.half_gradient + along * line.turn
+        slope = 2 * dr.abs(dr.dot(half_gradient, ray.d))
+        error = value_error(line.q + along * ray.d, half_gradient, t) + dr.select(own, start_error, 0)
+        # As large that the quadric is away from 0 by more than the error at both ends, also where it bends.
+        known = 8 * dr.abs(line.a) * error < dr.square(slope)
+        return dr.select(dr.isfinite(t), dr.select(known, quotient(4 * error, slope), dr.inf), 0)
+
+    a_error = 2 * bend * (ray.spread + 2 * number)
+    b_error = ray.spread * dr.norm(line.half_gradient) + bend * (at_start + dr.abs(line.middle) * ray.spread)
+    b_error += 4 * number * (bend * dr.norm(line.q) + dr.norm(quadric.g))
+    c_error = value_error(line.q, line.half_gradient, line.middle)
+    touching = (
+        (dr.abs(line.a) + a_error) * c_error + dr.abs(line.c) * a_error + b_error * (2 * dr.abs(line.b) + b_error)
+    )
+    return Passage(
+        near=near,
+        far=dr.select(own, line.other_root(), far),
+        near_primitive=rows.primitive(),
+        far_primitive=rows.primitive(),
+        inside_before=line.inside_before(),
+        close=(~own & ~(dr.abs(line.discriminant) > 2 * touching)) | ~(dr.abs(line.a) > a_error),
+        error=distance_error,
     )
 
 
@@ -346,4 +387,9 @@ def surface_at(rows: Rows, p: Any, ray: Ray, own: Any, reach: Any) -> SurfacePoi
     slope = dr.norm(half_gradient)
     n = vector(dr.select(slope == 0, dr.select(own & ray.inside, ray.d, -ray.d), half_gradient * quotient(1, slope)))
     error = quotient(0.5 * quadric.error(q), slope)
+    if bounds_all(error):
+        bend = quadric.bend()
+        error *= 4
+        error += 4 * epsilon(error) * (largest(quadric.anchor) + dr.norm(q) + quotient(dr.norm(quadric.g), bend))
+        error += quotient(dr.square(step) * dr.squared_norm(half_gradient) * bend, slope)
     return SurfacePoint(type(p)(quadric.anchor + q), n, error, quotient(slope, quadric.bend()))

@@ -9,7 +9,7 @@ import numpy as np
 from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.intersection.passages import Passage
 from mitsuba_plugins.intersection.rays import Ray, largest
-from mitsuba_plugins.intersection.rounding import epsilon, most_of_radius
+from mitsuba_plugins.intersection.rounding import bounds_all, epsilon, most_of_radius
 from mitsuba_plugins.intersection.shapes.kind import Contact, Row, Rows, Shape, SurfacePoint
 from native_tracer.incidence import surfaces_at
 
@@ -58,9 +58,30 @@ def passage(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
     """Both roots, from the centre; those that nearly touch are close to a tie."""
     row = rows.row()
     f, b, discriminant = _from_center(row, ray)
+    if bounds_all(discriminant):
+        return _doubtful_passage(rows, row, ray, own, f, b, discriminant)
     close = dr.abs(discriminant) <= most_of_radius(row.w) * dr.square(row.w)
     near, far = _roots(row, f, b, discriminant)
     return Passage(near, far, rows.primitive(), rows.primitive(), close=close & ~own)
+
+
+def _doubtful_passage(rows: Rows, row: Any, ray: Ray, own: Any, f: Any, b: Any, discriminant: Any) -> Passage:
+    """The same with bounds: a tie is what is within these."""
+    radius = row.w
+    error = ray.t_min + surface_error(row) + 2 * epsilon(b) * dr.abs(b)
+    off = error + dr.abs(b) * ray.spread
+    touching = off * (4 * radius + off)
+    near, far = _roots(row, f, b, discriminant)
+    # A little more than to first order, as the discriminant is far from 0.
+    steep = quotient(1.25 * radius, dr.sqrt(discriminant))
+
+    def distance_error(_: Any, t: Any) -> Any:
+        return (error + dr.abs(t) * ray.spread) * steep
+
+    close = ~(dr.abs(discriminant) > touching) & (~own | ray.inside)
+    # Of two crossings behind it does not matter where they are.
+    close &= ~(b + radius < -off - ray.shift)
+    return Passage(near, far, rows.primitive(), rows.primitive(), close=close, error=distance_error)
 
 
 def passage_by_rules(rows: Rows, ray: Ray, own: Any, reach: Any) -> Passage:
@@ -102,6 +123,8 @@ def surface_at(rows: Rows, p: Any, ray: Ray, own: Any, reach: Any) -> SurfacePoi
 def surface_error(row: Any) -> Any:
     """How far a sphere may be off: its numbers are whole and meant as they stand, or decimals that were rounded."""
     center, radius = row.xyz, row.w
+    if bounds_all(radius):
+        return epsilon(radius) * (radius + largest(center))
     meant = (radius == dr.floor(radius)) & dr.all(center == dr.floor(center))
     return dr.select(meant, 0, epsilon(radius) * (radius + largest(center)))
 
