@@ -31,7 +31,7 @@ def test_a_curve_a_way(small_scene, tmp_path):
     )
     assert uniform.points[1].rms == pytest.approx(255 * np.sqrt(np.mean((found - truth) ** 2)))
     assert all(point.rms < uniform.points[1].rms for point in adaptive.points)
-    assert all(1 < point.rays < 13 for point in adaptive.points)
+    assert all(1 < point.rays < 15 for point in adaptive.points)
     assert all(len(row) == len(HEADER) == len(ALIGN) for row in rows(study))
 
 

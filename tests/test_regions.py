@@ -9,6 +9,7 @@ import pytest
 from variant import VARIANT
 
 from converter.analysis.regions.warnings import REGIONS, method_warnings, region_warnings
+from converter.certify.certificate import certify
 from converter.commands.main import main
 from converter.renderers.base import RendererUnavailable
 from converter.renderers.methods import METHODS
@@ -31,7 +32,7 @@ from converter.studies.families.scenes import (
     sphere,
 )
 from converter.studies.stability import study_family
-from converter.studies.worker import DrawingFailed
+from converter.studies.worker import CERTIFICATE, DrawingFailed
 
 SCENES = Path(__file__).parents[1] / "scenes"
 VIEW = camera((0.0, 0.0, 4.0), (0.0, 0.0, 0.0))
@@ -339,6 +340,8 @@ class Here:
 
     def render(self, method, variant, scene, settings, seconds):
         try:
+            if method == CERTIFICATE:
+                return certify(scene, settings).colors
             return np.asarray(METHODS[method].renderer(VARIANT).render(scene, settings).pixels)
         except (RendererUnavailable, ValueError) as error:  # of nothing there is no mesh, nor of what moves
             raise DrawingFailed(str(error)) from error

@@ -110,7 +110,7 @@ REGIONS = (
     Region(("gap",), {"double": 3e-13, "float": 2e-6, "mesh": 2e-6}, _gaps),
     Region(("nearly-coplanar",), {"double": 1e-14, "float": 2e-7, **_EMBREE}, _near_coplanar),
     Region(
-        ("nested-glass", "bubble", "overlapping-glass"), {"double": 3e-13, "float": 3e-5, "mesh": 3e-6}, _glass_balls
+        ("nested-glass", "bubble", "overlapping-glass"), {"double": 3e-12, "float": 3e-5, "mesh": 3e-6}, _glass_balls
     ),
     Region(("bowls", "flush", "crescents"), {"double": 5e-14, "float": 5e-7}, _operands),
     Region(("glass-shells",), {"float": 1e-5, "mesh": 1e-3}, _glass_operands),

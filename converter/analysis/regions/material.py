@@ -86,7 +86,7 @@ def _encloses(s: Situation, index: int) -> bool:
 
 REGIONS = (
     Region(("checker-boundary", "texmap-seam"), {"float": 3e-7}, _fine_patterns),
-    Region(("grazing-rarer",), {"float": 3e-6}, _near_indices),
+    Region(("grazing-rarer",), {"double": 3e-8, "float": 3e-6}, _near_indices),
     Region(("trapped-ray",), {"double": 1 / 48, "float": 1 / 12, "mesh": 1 / 48}, _curved_mirrors),
     Region(("facing-mirrors",), {"float": 1 / 256, "mesh": 1 / 256}, _plane_mirrors),
 )

@@ -112,6 +112,14 @@ def _long_lens_at_mirrors(s: Situation, limit: float) -> Iterator[Finding]:
         yield from _too_long(s, _pixel_shares(s), limit)
 
 
+def _long_lens_at_round_glass(s: Situation, limit: float) -> Iterator[Finding]:
+    """Light that enters and leaves glass at a glance magnifies what is not known of a ray."""
+    if s.needs.refracts:
+        glass = np.array([s.finish(i).kt > 0 for i in range(len(s.scene.objects))], dtype=np.bool_)
+        round_bodies = _curved(s) | np.isin(np.arange(len(glass)), s.bodies.object[s.bodies.is_ball])
+        yield from _too_long(s, np.where(glass & round_bodies, _pixel_shares(s), np.inf), limit)
+
+
 def _horizon(s: Situation, limit: float) -> Iterator[Finding]:
     """Of bodies without bounds, which are cut off somewhere to be meshes."""
     tangent = math.tan(math.radians(s.scene.camera.fovy) / 2)
@@ -191,6 +199,7 @@ REGIONS = (
     Region(
         ("mirror-corner", "critical-angle", "grazing-glass"), {"double": 3e-14, "float": 2e-6}, _long_lens_at_mirrors
     ),
+    Region(("grazing-glass",), {"double": 3e-11}, _long_lens_at_round_glass),
     Region(
         ("quadric-edge", "needles"),
         {"double": 3e-15, "float": 1e-6, "offset": 5e-8, "ulp": 5e-8},
