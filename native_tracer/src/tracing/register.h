@@ -82,7 +82,9 @@ struct Register<float> {
     static Reals abs(Reals a) { return (Reals)((Integers)a & INT32_MAX); }
     static Reals multiply_subtract(Reals a, Reals b, Reals c) { return _mm512_fmsub_ps(a, b, c); }
     static Reals of_bytes(const unsigned char* from) {
-        return _mm512_cvtepi32_ps(_mm512_cvtepu8_epi32(_mm_loadu_si128(reinterpret_cast<const __m128i*>(from))));
+        const __m512i bytes =
+            _mm512_maskz_cvtepu8_epi32(0xFFFF, _mm_loadu_si128(reinterpret_cast<const __m128i*>(from)));
+        return _mm512_maskz_cvtepi32_ps(0xFFFF, bytes);
     }
     static Reals sqrt(Reals a) { return _mm512_maskz_sqrt_ps(0xFFFF, a); }
     static Reals floor(Reals a) { return _mm512_maskz_roundscale_ps(0xFFFF, a, _MM_FROUND_FLOOR); }
