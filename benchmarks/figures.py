@@ -188,7 +188,7 @@ def speed() -> None:
             "native, float": _seconds(NativeRenderer("float"), FIGURE1),
             "Mitsuba, warm": _seconds(MitsubaRenderer(), FIGURE1),
             "Mitsuba through meshes and Embree, warm": _seconds(MitsubaRenderer(intersections="mesh"), FIGURE1),
-            "Python, which imports nothing": _process(sys.executable, "-c", "pass"),
+            "Python that imports nothing, whole process": _process(sys.executable, "-c", "pass"),
             "`raytrace`, whole process": _process("raytrace", FIGURE1, Path(folder, "a.ppm")),
             "`whitted render`, whole process, warm kernel cache": _process(
                 "whitted", "render", FIGURE1, Path(folder, "b.ppm"), "--quiet"
