@@ -4,6 +4,7 @@ import signal
 
 import pytest
 import variant
+from command_scenes import SCENE
 
 from converter.commands import main
 from converter.scene.model import Camera, Checker, Finish, Light, Object, Polyhedron, Scene, Solid, Sphere
@@ -54,6 +55,14 @@ def whitted(capsys):
         return status, *capsys.readouterr()
 
     return run
+
+
+@pytest.fixture
+def scene(tmp_path):
+    """The file of a scene with three balls."""
+    file = tmp_path / "small.in"
+    file.write_text(SCENE)
+    return file
 
 
 @pytest.fixture

@@ -7,7 +7,6 @@ from dataclasses import replace
 
 import numpy as np
 import pytest
-from test_chart import scene as plain_scene  # noqa: F401 - a fixture
 
 from converter.renderers.base import Rendering
 from converter.renderers.methods import METHODS
@@ -62,10 +61,10 @@ def test_povray_supersamples(small_scene):
     assert errors[1] < 0.5 * errors[0]
 
 
-def test_the_command(whitted, plain_scene, tmp_path):  # noqa: F811
+def test_the_command(whitted, scene, tmp_path):
     out, table, data = (tmp_path / name for name in ("a.svg", "a.csv", "a.json"))
     options = ("--adaptive", "--size", "24x18", "--runs", 2, "--quiet", "--csv", table, "--json", data)
-    status, printed, _ = whitted("chart", plain_scene, "-o", out, *options)
+    status, printed, _ = whitted("chart", scene, "-o", out, *options)
     assert status == 0
     assert "native, --adaptive" in printed
     assert "native, in every pixel" in out.read_text()

@@ -22,13 +22,6 @@ ON_VARIANT = ("--variant", VARIANT)
 
 
 @pytest.fixture
-def scene(tmp_path):
-    file = tmp_path / "small.in"
-    file.write_text(SCENE)
-    return file
-
-
-@pytest.fixture
 def bad_scene(tmp_path):
     file = tmp_path / "bad.in"
     file.write_text(SCENE.replace("solid 1 .5 .2", "sollid 1 .5 .2"))

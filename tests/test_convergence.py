@@ -7,7 +7,6 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from test_chart import scene as plain_scene  # noqa: F401 - a fixture
 
 from converter.renderers.base import EffectUnavailable
 from converter.renderers.methods import METHODS, find_method
@@ -159,10 +158,10 @@ def test_chart_of_a_sampled_scene(whitted, tmp_path):
     assert (tmp_path / "a.svg").read_bytes().startswith(b"<?xml")
 
 
-def test_sampled_and_plain_scenes_have_a_chart_each(whitted, plain_scene, tmp_path):  # noqa: F811
-    scene = tmp_path / "soft.in"
-    scene.write_text(write_scene(PENUMBRA))
-    status, _, err = whitted("chart", scene, plain_scene, "-o", tmp_path / "a.svg")
+def test_sampled_and_plain_scenes_have_a_chart_each(whitted, scene, tmp_path):
+    soft = tmp_path / "soft.in"
+    soft.write_text(write_scene(PENUMBRA))
+    status, _, err = whitted("chart", soft, scene, "-o", tmp_path / "a.svg")
     assert status == 2
     assert "soft.in is sampled and " in err
     assert "these need a chart each" in err

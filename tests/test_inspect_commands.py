@@ -11,13 +11,6 @@ from converter.renderers.native import NativeRenderer
 ON_VARIANT = ("--variant", VARIANT)
 
 
-@pytest.fixture
-def scene(tmp_path):
-    file = tmp_path / "small.in"
-    file.write_text(SCENE)
-    return file
-
-
 # ---- inspect
 
 

@@ -8,19 +8,12 @@ import sys
 from pathlib import Path
 
 import pytest
-from command_scenes import SCENE, rendering_of
+from command_scenes import rendering_of
 from variant import VARIANT
 
 from converter.commands import raytrace
 
 ON_VARIANT = ("--variant", VARIANT)
-
-
-@pytest.fixture
-def scene(tmp_path):
-    file = tmp_path / "small.in"
-    file.write_text(SCENE)
-    return file
 
 
 # ---- compare
