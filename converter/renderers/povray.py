@@ -6,7 +6,9 @@ import shutil
 import subprocess
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from functools import partial
 from pathlib import Path
 from typing import Literal
 
@@ -131,17 +133,22 @@ def _options(how: Supersampling) -> list[str]:
 
 def _run(command: list[str], folder: str) -> tuple[float, int]:
     """Run POV-Ray in `folder`, where alone it may read and write; its trace time in seconds, and rays from the eye."""
-    # In a session of its own, so that Ctrl-C reaches it through us alone.
-    process = subprocess.Popen(
-        command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL, stderr=subprocess.PIPE,
-        text=True, errors="replace", start_new_session=True,
+    # In a session of its own, so that Ctrl-C reaches it through us alone; and started by another thread, where Ctrl-C
+    # does not come between the process and our knowing of it.
+    start = partial(
+        subprocess.Popen, command, cwd=folder, stdin=subprocess.DEVNULL, stdout=subprocess.DEVNULL,
+        stderr=subprocess.PIPE, text=True, errors="replace", start_new_session=True,
     )  # fmt: skip
-    try:
-        _, told = process.communicate()
-    except BaseException:
-        process.kill()
-        process.wait()
-        raise
+    with ThreadPoolExecutor(1) as executor:
+        starting = executor.submit(start)
+        try:
+            process = starting.result()
+            _, told = process.communicate()
+        except BaseException:
+            if starting.exception() is None:
+                starting.result().kill()
+                starting.result().wait()
+            raise
     found, rays = _TRACE_TIME.search(told), _RAYS.search(told)
     if process.returncode != 0 or found is None or rays is None:
         raise PovrayError(f"POV-Ray failed: {_complaint(told) or f'exit status {process.returncode}'}")
