@@ -13,6 +13,7 @@ import mitsuba as mi
 import numpy as np
 
 from mitsuba_plugins.intersection.columns import column
+from mitsuba_plugins.intersection.geometry import Surface
 from mitsuba_plugins.intersection.rays import Real
 
 
@@ -43,6 +44,25 @@ class Illumination:
     diffuse: Any
     specular: Any
     undecided: Any
+
+
+class Bsdfs:
+    """The BSDFs that are nested in an integrator, by their names, in an object of a class that Dr.Jit does not know.
+
+    In what it knows it looks for variables of loops, and takes the texels of a texture that two BSDFs share for some.
+
+    Raises:
+        ValueError: one that the surfaces name is missing, or is no `phong`.
+
+    """
+
+    def __init__(self, props: Any, surfaces: list[Surface]) -> None:
+        self.by_name = {name: plugin for name, plugin in props.objects() if isinstance(plugin, mi.BSDF)}
+        for name in {surface.material for surface in surfaces}:
+            if name not in self.by_name:
+                raise ValueError(f"whitted: 'geometry' names a material '{name}', and no BSDF of that name is nested")
+            if not hasattr(bsdf := self.by_name[name], "COEFFICIENTS"):
+                raise ValueError(f"whitted: every material is a 'phong' BSDF, '{name}' is a {type(bsdf).__name__}")
 
 
 class Materials:

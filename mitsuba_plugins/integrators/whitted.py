@@ -15,14 +15,10 @@ from mitsuba_plugins.integrators.doubts import MOST_DOUBT, Precisions, bounds_ho
 from mitsuba_plugins.integrators.pictures import PassSums, bands, block
 from mitsuba_plugins.integrators.signature import hit_word, shadow_word
 from mitsuba_plugins.integrators.stack import RayStack
-from mitsuba_plugins.integrators.tables import Finish, Illumination, Lights, Materials
-from mitsuba_plugins.intersection.analytic import AnalyticSurfaces
-from mitsuba_plugins.intersection.bvh import BvhSurfaces
+from mitsuba_plugins.integrators.tables import Bsdfs, Finish, Illumination, Lights, Materials
 from mitsuba_plugins.intersection.columns import column
 from mitsuba_plugins.intersection.contacts import Contacts, EyeContact, LightContacts
 from mitsuba_plugins.intersection.geometry import parse_geometry
-from mitsuba_plugins.intersection.interactions import MitsubaSurfaces
-from mitsuba_plugins.intersection.mesh import MeshSurfaces
 from mitsuba_plugins.intersection.primitives import Primitives, pieces
 from mitsuba_plugins.intersection.rays import (
     NOTHING,
@@ -49,16 +45,8 @@ from mitsuba_plugins.intersection.rounding import (
     most_blur,
     most_camera_blur,
 )
+from mitsuba_plugins.intersection.ways import WAYS, tracer_of, way_for
 from mitsuba_plugins.syntax import syntax
-
-INTERSECTIONS = ("analytic", "bvh", "mesh", "offset", "ulp")
-"""Ways to find what a ray hits."""
-ANALYTIC_LIMIT = 32
-"""Rows of numbers (a sphere and a plane have one, a quadric four) up to which "auto" is "analytic", ..."""
-ANALYTIC_MOST = 96
-"""... or this, as its kernels grow with them, if there are few bounded objects: only these does a tree pass by."""
-ANALYTIC_OBJECTS = 12
-"""That are few."""
 
 
 class Whitted(mi.SamplingIntegrator):
@@ -159,15 +147,14 @@ class Whitted(mi.SamplingIntegrator):
             with open(str(mi.file_resolver().resolve(props["filename"])), encoding="utf-8") as file:  # noqa: PTH123
                 text = file.read()
         self._geometry = parse_geometry(text)
-        self._bsdfs = Bsdfs(_materials(props, self.surfaces))
+        self._bsdfs = Bsdfs(props, self.surfaces)
         self.ambient = mi.Color3d(props.get("ambient", mi.ScalarColor3d(0.0)))
         self.background = mi.Color3d(props.get("background", mi.ScalarColor3d(0.0)))
         self.max_depth = mi.UInt32(props.get("max_depth", 16))
         self.intersections = props.get("intersections", "auto")
-        if self.intersections not in (*INTERSECTIONS, "auto"):
-            raise ValueError(f"whitted: intersections is one of {INTERSECTIONS} or auto, not '{self.intersections}'")
-        if self.intersections == "auto" or (self.intersections == "bvh" and not self.surfaces):  # of nothing, no tree
-            self.intersections = "analytic" if _has_few(self.surfaces) else "bvh"
+        if self.intersections not in (*WAYS, "auto"):
+            raise ValueError(f"whitted: intersections is one of {WAYS} or auto, not '{self.intersections}'")
+        self.intersections = way_for(self.surfaces, self.intersections)
         self.moves = any(surface.moves for surface in self.surfaces)
         if self.moves and self.intersections not in ("analytic", "bvh"):
             raise ValueError(f"whitted: 'geometry' moves objects, and the shapes of '{self.intersections}' stand still")
@@ -243,15 +230,6 @@ class Whitted(mi.SamplingIntegrator):
         lights = Lights(types, scene.emitters())
         at_lights = LightContacts(types, contacts, lights.positions, lights.radii)
         on_something = hasattr(sensor, "eye") and not getattr(sensor, "has_lens", False)
-        tracer: Any
-        if self.intersections == "analytic":
-            tracer = AnalyticSurfaces(types, self.surfaces, primitives, at_lights)
-        elif self.intersections == "bvh":
-            tracer = BvhSurfaces(types, self.surfaces, primitives, at_lights)
-        elif self.intersections == "mesh":
-            tracer = MeshSurfaces(types, scene, self.surfaces, primitives, at_lights)
-        else:
-            tracer = MitsubaSurfaces(scene, self.surfaces, primitives, self.intersections)
         return {
             "types": types,
             "cutoff": types.Float(self.cutoff),
@@ -261,7 +239,7 @@ class Whitted(mi.SamplingIntegrator):
             "_light_contacts": at_lights,
             "_eye_contact": EyeContact(types, contacts, np.ravel(sensor.eye)) if on_something else None,
             "_errors_of_primary_rays": camera_errors(types, sensor),
-            "_tracer": tracer,
+            "_tracer": tracer_of(self.intersections, types, scene, self.surfaces, primitives, at_lights),
         }
 
     def _fits_single(self):
@@ -617,16 +595,6 @@ class Whitted(mi.SamplingIntegrator):
         return f"Whitted[{len(self.surfaces)} surfaces, {way}, max_depth={self.max_depth}]"
 
 
-class Bsdfs:
-    """The nested BSDFs, in an object of a class that Dr.Jit does not know.
-
-    In what it knows it looks for variables of loops, and takes the texels of a texture that two BSDFs share for some.
-    """
-
-    def __init__(self, by_name):
-        self.by_name = by_name
-
-
 def _to_disc(center, position, radius, square, error):
     """From a point to a point of a light, and how far these two may be off, given how far the first may.
 
@@ -639,29 +607,6 @@ def _to_disc(center, position, radius, square, error):
     is_disc = radius > 0
     way = center + (radius * x) * tangent + (radius * y) * bitangent
     return dr.select(is_disc, way, center), dr.select(is_disc, error + off, error)
-
-
-def _has_few(surfaces):
-    """Whether code for each surface is faster than a tree."""
-    size = sum(len(surface.rows) for surface in surfaces)
-    bounded = sum(surface.box is not None for surface in surfaces)
-    return size <= ANALYTIC_LIMIT or (size <= ANALYTIC_MOST and bounded <= ANALYTIC_OBJECTS)
-
-
-def _materials(props, surfaces):
-    """The nested BSDFs, by their names.
-
-    Raises:
-        ValueError: one is missing, or is no `phong`.
-
-    """
-    bsdfs = {name: plugin for name, plugin in props.objects() if isinstance(plugin, mi.BSDF)}
-    for name in {surface.material for surface in surfaces}:
-        if name not in bsdfs:
-            raise ValueError(f"whitted: 'geometry' names a material '{name}', and no BSDF of that name is nested")
-        if not hasattr(bsdfs[name], "COEFFICIENTS"):
-            raise ValueError(f"whitted: every material is a 'phong' BSDF, '{name}' is a {type(bsdfs[name]).__name__}")
-    return bsdfs
 
 
 mi.register_integrator("whitted", Whitted)

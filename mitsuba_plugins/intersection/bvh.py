@@ -35,6 +35,15 @@ class BvhSurfaces(ExactSurfaces):
         _, found, _, close = search(ray, distance, light, active)
         return found, close
 
+    def _start(self, ray: Ray, t: Any, active: Any) -> tuple[Any, Any, Any, Any, Any, Any]:
+        """How a search begins: the largest coordinate of rays' origins, the limit for hits before `t`, the walk and its
+        first node, what is tested before, and which rays search.
+        """
+        walk = self._tree.walk(ray)
+        # First the object that the ray travels inside, or leaves: a convex one it does not meet again.
+        index = ray.object if self.primitives.any_concave else dr.select(ray.inside, ray.object, NOTHING)
+        return largest(ray.o), self._tree.limit(t), walk, mi.UInt32(walk.start), index, mi.Bool(active)
+
     @syntax
     def _search(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any, Any, Any]:
         """What is met first before `distance`; with a light there, anything that is in its way."""
@@ -44,13 +53,7 @@ class BvhSurfaces(ExactSurfaces):
         primitive_best = dr.zeros(mi.UInt32, width)
         t_second = dr.full(self._types.Float, dr.inf, width) if light is None else None
         close = dr.full(mi.Bool, False, width)
-        reach = largest(ray.o)
-        limit = self._tree.limit(t_best)
-        walk = self._tree.walk(ray)
-        node = mi.UInt32(walk.start)
-        # First the object that the ray travels inside, or leaves: a convex one it does not meet again.
-        index = ray.object if self.primitives.any_concave else dr.select(ray.inside, ray.object, NOTHING)
-        searching = mi.Bool(active)
+        reach, limit, walk, node, index, searching = self._start(ray, t_best, active)
         while dr.hint(searching, exclude=[self, ray, distance, light, reach, walk]):
             tested = searching & (index != NOTHING)
             if dr.hint(tested, exclude=[self, ray, distance, light, reach, walk, index, tested]):
@@ -87,12 +90,7 @@ class BvhSurfaces(ExactSurfaces):
         other = dr.full(self._types.Float, dr.inf, width)  # the least that the distance of any other may be
         object_best, primitive_best = dr.full(mi.UInt32, NOTHING, width), dr.zeros(mi.UInt32, width)
         close = dr.full(mi.Bool, False, width)
-        reach = largest(ray.o)
-        limit = self._tree.limit(t_best)
-        walk = self._tree.walk(ray)
-        node = mi.UInt32(walk.start)
-        index = ray.object if self.primitives.any_concave else dr.select(ray.inside, ray.object, NOTHING)
-        searching = mi.Bool(active)
+        reach, limit, walk, node, index, searching = self._start(ray, t_best, active)
         while dr.hint(searching, exclude=[self, ray, walk, distance, light, reach]):
             tested = searching & (index != NOTHING)
             if dr.hint(tested, exclude=[self, ray, distance, light, reach, walk, index, tested]):
