@@ -149,6 +149,24 @@ def test_rays_stay_within_their_bounds(mi, name, tmp_path):
             assert known.any() or bounce > 0
 
 
+@pytest.mark.parametrize("height", [1e-4, -1e-4])
+@pytest.mark.parametrize("direction", [1, -1])
+def test_rays_that_may_start_at_another_surface_are_undecided(mi, height, direction, tmp_path):
+    """Just above a ball or just below, and farther from it or nearer than the origin may be off."""
+    import drjit as dr
+
+    from mitsuba_plugins.intersection.rays import real, start_ray
+
+    text = "0 1 -4 0 0 0 0 1 0 60 1 0 0 0 1 1 1 1 0 0 1 solid 1 1 1 1 0.4 0.6 0 1 0 0 0 1 0 0 sphere 0 0 0 1"
+    scene = parse_scene(text, tmp_path / "ball.in")
+    loaded = MitsubaRenderer(VARIANT, precision="mixed")._load(scene, Settings(width=4, height=3))
+    integrator, types = loaded.integrator(), real("float")
+    with integrator.prepared(loaded), dr.suspend_grad(), integrator.precisions.single():
+        for error, undecided in ((1e-3, True), (1e-6, False)):
+            ray = start_ray(types, types.Point3(0, 0, 1 + height), types.Vector3(0, 0, direction), error)
+            assert integrator.closest(ray, mi.Bool(True)).undecided == mi.Bool(undecided)
+
+
 def crossing(integrator, ray, index, active):
     """Where rays cross an object, and how far that may be off."""
     from mitsuba_plugins.intersection.rays import largest

@@ -57,7 +57,8 @@ class ExactSurfaces:
         lean = quotient(error, surface.radius)
         undecided = active & close if ties and (bounded or self.postpones_ties) else False
         if bounded:
-            # Which side the ray comes from, and whether what is known to first order is known at all.
+            # Which side the ray comes from, and whether what is known to first order is known at all. Shapes call
+            # such rays close, all that were ever tried; but by rules of their own, of which this does not follow.
             lean += least_spread(lean)
             grazes = ~(slope > 2 * (ray.spread + lean)) | ~(lean < 0.25) | ~(bent < 0.25)
             undecided |= (active & ~(ray.spread < 0.25)) | (valid & grazes)
