@@ -248,6 +248,40 @@ def test_a_body_seen_from_within_is_shaded_by_its_own_far_side(precision, add_ob
     assert contribution["cosine"] == 1 and contribution["shadowed_by"] == blocker
 
 
+@pytest.mark.parametrize(("light", "blocker"), [((0, 1.5, 0), 1), ((0, 30, 0), 0)])
+def test_of_what_is_in_the_way_of_a_light_outside_it_is_the_body_seen_from_within(precision, light, blocker):
+    scene = new_scene()
+    matte = add_finish(scene, kd=1)
+    scene.add_polyhedron(scene.add_solid(WHITE), matte, box((-2, -2, -2), (2, 2, 2)))
+    scene.add_sphere(scene.add_solid(WHITE), matte, (0, 0.5, 0), 0.25)
+    scene.add_light(light, WHITE, CONSTANT)
+    ray = trace_ray(scene, (0, -1, 0), DOWN, precision=precision)
+    assert ray["hit"]["lights"][0]["shadowed_by"] == blocker
+
+
+@pytest.mark.parametrize(("place", "lit"), [(1.0, {True}), (2.25, {False, True}), (3.5, {False})])
+def test_a_disc_in_a_wall_lights_the_room_with_its_inner_part(precision, place, lit):
+    scene = new_scene()
+    scene.add_polyhedron(scene.add_solid(WHITE), add_finish(scene, kd=1), box((-2, -2, -2), (2, 10, 2)))
+    scene.add_light((place, 2.25, 0), WHITE, CONSTANT, 0.75)
+    look(scene, (-1.75, 0, 0), DOWN)
+    image = native_tracer.Image(1, 1)
+    seen = set()
+    for seed in range(64):
+        native_tracer.render(scene, image, cutoff=0, max_depth=0, precision=precision, seed=seed, corner=False)
+        seen.add(image.pixels[0, 0, 0] > 0)
+    assert seen == lit
+
+
+@pytest.mark.parametrize(("height", "blocker"), [(4 - 2**-12, None), (4 + 2**-12, 0), (5, 0)])
+def test_a_light_near_a_wall_is_on_one_side_of_it(precision, height, blocker):
+    scene = new_scene()
+    scene.add_polyhedron(scene.add_solid(WHITE), add_finish(scene, kd=1), box((-2, 0, -2), (2, 4, 2)))
+    scene.add_light((0.5, height, 0), WHITE, CONSTANT)
+    ray = trace_ray(scene, (0, 2, 0), DOWN, precision=precision)
+    assert ray["hit"]["lights"][0]["shadowed_by"] == blocker
+
+
 def test_light_outside_a_sphere_seen_from_within_is_behind_its_near_side(precision):
     scene = new_scene()
     scene.add_sphere(scene.add_solid(WHITE), add_finish(scene, kd=1), BLACK, 2)
