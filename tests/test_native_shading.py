@@ -2,9 +2,23 @@
 
 import math
 from array import array
+from random import Random
 
 import pytest
-from native_scenes import BLACK, CONSTANT, EPSILON, PRECISIONS, WHITE, add_finish, box, draw, look, new_scene, trace_ray
+from native_scenes import (
+    BLACK,
+    CONSTANT,
+    EPSILON,
+    PRECISIONS,
+    WHITE,
+    add_finish,
+    box,
+    draw,
+    look,
+    new_scene,
+    normalized,
+    trace_ray,
+)
 
 import native_tracer
 
@@ -246,6 +260,68 @@ def test_a_body_seen_from_within_is_shaded_by_its_own_far_side(precision, add_ob
     assert not ray["hit"]["entering"] and ray["hit"]["normal"] == DOWN
     (contribution,) = ray["hit"]["lights"]
     assert contribution["cosine"] == 1 and contribution["shadowed_by"] == blocker
+
+
+@pytest.mark.parametrize(("light", "blocker"), [((0, 1.5, 0), 1), ((0, 30, 0), 0)])
+def test_of_what_is_in_the_way_of_a_light_outside_it_is_the_body_seen_from_within(precision, light, blocker):
+    scene = new_scene()
+    matte = add_finish(scene, kd=1)
+    scene.add_polyhedron(scene.add_solid(WHITE), matte, box((-2, -2, -2), (2, 2, 2)))
+    scene.add_sphere(scene.add_solid(WHITE), matte, (0, 0.5, 0), 0.25)
+    scene.add_light(light, WHITE, CONSTANT)
+    ray = trace_ray(scene, (0, -1, 0), DOWN, precision=precision)
+    assert ray["hit"]["lights"][0]["shadowed_by"] == blocker
+
+
+@pytest.mark.parametrize(("place", "lit"), [(1.0, {True}), (2.25, {False, True}), (3.5, {False})])
+def test_a_disc_in_a_wall_lights_the_room_with_its_inner_part(precision, place, lit):
+    scene = new_scene()
+    scene.add_polyhedron(scene.add_solid(WHITE), add_finish(scene, kd=1), box((-2, -2, -2), (2, 10, 2)))
+    scene.add_light((place, 2.25, 0), WHITE, CONSTANT, 0.75)
+    look(scene, (-1.75, 0, 0), DOWN)
+    image = native_tracer.Image(1, 1)
+    seen = set()
+    for seed in range(64):
+        native_tracer.render(scene, image, cutoff=0, max_depth=0, precision=precision, seed=seed, corner=False)
+        seen.add(image.pixels[0, 0, 0] > 0)
+    assert seen == lit
+
+
+@pytest.mark.parametrize(("height", "blocker"), [(4 - 2**-12, None), (4 + 2**-12, 0), (5, 0)])
+def test_a_light_near_a_wall_is_on_one_side_of_it(precision, height, blocker):
+    scene = new_scene()
+    scene.add_polyhedron(scene.add_solid(WHITE), add_finish(scene, kd=1), box((-2, 0, -2), (2, 4, 2)))
+    scene.add_light((0.5, height, 0), WHITE, CONSTANT)
+    ray = trace_ray(scene, (0, 2, 0), DOWN, precision=precision)
+    assert ray["hit"]["lights"][0]["shadowed_by"] == blocker
+
+
+@pytest.mark.parametrize("count", [8, 64, 1000])
+def test_a_stone_is_lit_as_a_csg_of_the_same_planes(precision, count):
+    # No light is known to be outside of a csg: its shadow rays are traced.
+    random = Random(count)
+
+    def direction():
+        return normalized([random.gauss(0, 1) for _ in range(3)])
+
+    planes = [(*direction(), -random.uniform(0.97, 1.03)) for _ in range(count)]
+    lights = [
+        (tuple(distance * c for c in direction()), (0.4, 0.3, 0.2), CONSTANT, radius)
+        for distance in (0.5, 0.9, 0.99, 1, 1.01, 1.1, 9)
+        for radius in (0, 0.1)
+    ]
+
+    def picture(add_stone):
+        scene = new_scene(WHITE, (0.2, 0.3, 0.5))
+        scene.set_camera((0, 1, 5), BLACK, (0, 1, 0), 30)
+        for light in lights:
+            scene.add_light(*light)
+        add_stone(scene, scene.add_solid(WHITE), add_finish(scene, ka=0.1, kd=0.4, kr=0.2, kt=0.6, eta=1 / 1.6))
+        image = draw(scene, 16, 12, precision=precision, cutoff=1 / 16, max_depth=4)
+        return bytes(image.pixels.cast("B")), image.statistics["shadow"]
+
+    stone = picture(lambda scene, *looks: scene.add_polyhedron(*looks, planes))
+    assert stone == picture(lambda scene, *looks: scene.add_csg(*looks, [("polyhedron", planes)], [0]))
 
 
 def test_light_outside_a_sphere_seen_from_within_is_behind_its_near_side(precision):

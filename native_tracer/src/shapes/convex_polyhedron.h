@@ -232,6 +232,17 @@ class ConvexPolyhedron {
         }
     }
 
+    // How far a point surely lies beyond one of the planes; not positive where it may lie beyond none.
+    Real distance_outside(const Vector<Real>& point) const {
+        const Real reach = std::max({std::abs(point.x), std::abs(point.y), std::abs(point.z)});
+        Real most = 0;
+        for (const Plane<Real>& plane : planes_) {
+            const Real error = 32 * std::numeric_limits<Real>::epsilon() * (reach + std::abs(plane.offset));
+            most = std::max(most, dot(plane.normal, point) + plane.offset - error);
+        }
+        return most;
+    }
+
     // The unit normal and the offset of each plane.
     const std::vector<Plane<Real>>& planes() const { return planes_; }
 

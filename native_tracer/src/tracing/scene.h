@@ -9,6 +9,7 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
+#include <type_traits>
 #include <vector>
 
 #include "search/search.h"
@@ -33,8 +34,18 @@ struct Light {
     Real error;    // how far the position's sums with others may be off
     View<Real> view;
     std::vector<Contact<Real>> contacts;  // of a light that is a point
+    std::vector<Real> outside{};          // of each object that is a polyhedron: how far the light surely lies outside
 
     bool is_point() const { return radius == 0; }
+
+    // Whether rays that lead to the light start within a polyhedron that it lies outside of: they cross its surface,
+    // wherever that may be. Only where no rounding can matter: some plane is crossed far from the light, and steeply.
+    Mask<Real> is_outside_of_own(const Rays<Real>& rays, L distance) const {
+        const L height = L::gather([&](int lane) {
+            return rays.inside[lane] ? outside[static_cast<std::size_t>(rays.object[lane])] : Real(0);
+        });
+        return height > L(Real(0x1p-10)) * distance;
+    }
 
     // Whether rays that lead to the light cross an object at the surface that the light lies on.
     Mask<Real> lies_at(const Crossing<Real>& crossing, const Vector<L>& direction) const {
@@ -197,13 +208,22 @@ struct Scene {
     // An object that is in the way of each ray before `distance`, or -1: nothing is; for the rays in `wanted`.
     Indices<Real> blocker(const Rays<Real>& rays, const Light<Real>& light, Lanes<Real> distance,
                           Mask<Real> wanted) const {
+        Indices<Real> own = -1;
+        if (any(rays.inside & wanted)) {
+            const Mask<Real> leaving = light.is_outside_of_own(rays, distance) & wanted;
+            own = select(leaving, rays.object, own);
+            wanted &= ~leaving;
+            if (!any(wanted)) {
+                return own;
+            }
+        }
         Blocking<Real> blocking = find_blocker<Ties::found_in_the_way>(rays, light, distance, wanted, &light.view);
         Indices<Real>& blocker = blocking.blocker;
         const Mask<Real> close = blocking.close & wanted;
         if (decides_ties<Real> && any(close)) [[unlikely]] {
             blocker = select(close, blocker_by_rules(rays, light, distance, close), blocker);
         }
-        return blocker;
+        return select(wanted, blocker, own);
     }
 
  private:
@@ -519,6 +539,15 @@ void Scene<Real>::add_light(const SceneDescription& description, const LightDesc
          8 * tie_epsilon<Real> * std::max({std::abs(position.x), std::abs(position.y), std::abs(position.z)}),
          shapes.view_from(apart, position, static_cast<Real>(light.radius)),
          point ? contacts_of(description, light.position) : std::vector<Contact<Real>>{}});
+    for (const Object<Real>& object : objects) {
+        lights.back().outside.push_back(shapes.visit(object.shape, [&](const auto& shape) {
+            if constexpr (std::is_same_v<decltype(shape), const ConvexPolyhedron<Real>&>) {
+                return shape.distance_outside(position) - lights.back().radius;
+            } else {
+                return Real(0);
+            }
+        }));
+    }
     sampled |= !point;
 }
 
