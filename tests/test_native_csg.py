@@ -359,6 +359,22 @@ def test_boxes_lose_no_hit(precision):
     assert pixels(add, precision=precision, search="brute") == pixels(add, precision=precision, search="bvh")
 
 
+@pytest.mark.parametrize("precision", PRECISIONS)
+def test_leaves_that_a_ray_misses_are_left_out(precision):
+    """Of small balls, most of which it misses, and some of which the expression uses twice."""
+    rng = random.Random(11)
+    compared = 0
+    for _ in range(60):
+        leaves = [("sphere", (*(rng.uniform(-1, 1) for _ in range(3)), rng.uniform(0.3, 0.9))) for _ in range(9)]
+        program = [rng.randrange(9) if step >= 0 else step for step in random_program(rng, 14)]
+        scene = scene_of(leaves, program)
+        for _ in range(20):
+            origin = tuple(rng.uniform(-2, 2) for _ in range(3))
+            ray = trace_ray(scene, origin, tuple(rng.uniform(-1, 1) for _ in range(3)), precision=precision)
+            compared += check(leaves, program, ray, precision)
+    assert compared > 1000
+
+
 @pytest.mark.parametrize("leaf", ["cylinder", "parallel planes", "crossing planes"])
 def test_a_ray_along_a_leaf_meets_what_cuts_that_off(leaf):
     """It crosses the leaf nowhere, and is inside of it, or of its complement, all the way."""
@@ -446,6 +462,7 @@ def test_an_eye_on_a_subtracted_face_sees_the_hole(precision):
         ([BALL], [UNITE], "lacks an operand"),
         ([BALL], [0, -4], "no operation -4"),
         ([BALL] * 65, [0], "64 leaves at most"),
+        ([BALL, BALL], [0, *[1, UNITE] * 64], "uses 64 leaves at most"),
         ([("torus", (1, 2, 3, 4))], [0], "not 'torus'"),
         ([("sphere", (1, 2, 3, 0))], [0], "radius"),
         ([("polyhedron", [])], [0], "at least one plane"),

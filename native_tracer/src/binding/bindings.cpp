@@ -123,10 +123,12 @@ whitted::LeafDescription leaf_of(const std::string& kind, nb::handle numbers) {
 
 void check_program(const std::vector<int>& program, std::size_t leaves) {
     std::size_t size = 0;  // of the stack
+    std::size_t uses = 0;  // of leaves
     for (const int step : program) {
         if (step >= 0) {
             check_index(step, leaves, "leaf");
             ++size;
+            ++uses;
         } else if (step < whitted::CsgDescription::intersect) {
             throw std::invalid_argument("a csg has no operation " + std::to_string(step));
         } else if (size-- < 2) {
@@ -135,6 +137,10 @@ void check_program(const std::vector<int>& program, std::size_t leaves) {
         if (size > whitted::deepest_csg_stack) {
             throw std::invalid_argument("a csg is nested too deep");
         }
+    }
+    if (uses > whitted::most_csg_leaves) {
+        throw std::invalid_argument("a csg's program uses " + std::to_string(whitted::most_csg_leaves) +
+                                    " leaves at most");
     }
     if (size != 1) {
         throw std::invalid_argument("a csg's program has to leave one value");

@@ -143,10 +143,11 @@ class Csg {
     // expression without the others.
     struct Passages {
         Ends ends[most_csg_leaves];
-        int place[most_csg_leaves];  // of a leaf's, or -1: no ray meets it
+        int leaf[most_csg_leaves];   // whose they are
+        int place[most_csg_leaves];  // of those of a leaf that is left, or -1: no ray meets it
         int count;
-        int program[2 * most_csg_leaves];
-        int steps;
+        CsgStep steps[2 * most_csg_leaves];
+        int step_count;
     };
 
     struct Node {
@@ -186,11 +187,11 @@ class Csg {
         }
     }
 
-    // The leaves that some ray may meet, a bit each.
-    std::uint64_t leaves_met(const Rays<Real>& rays, const L& limit) const {
+    // The uses of the leaves that some ray may meet, a bit each.
+    std::uint64_t uses_met(const Rays<Real>& rays, const L& limit) const {
         std::uint64_t met = 0;
         for (const int leaf : plan_.apart) {
-            met |= std::uint64_t(1) << leaf;
+            met |= plan_.uses[static_cast<std::size_t>(leaf)];
         }
         if (nodes_.empty()) {
             return met;
@@ -212,47 +213,55 @@ class Csg {
                 continue;
             }
             for (int i = node.first; i < node.end; ++i) {
-                met |= std::uint64_t(1) << plan_.tree.order[static_cast<std::size_t>(i)];
+                met |= plan_.uses[plan_.tree.order[static_cast<std::size_t>(i)]];
             }
         }
         return met;
     }
 
-    // Leaves out of the expression those that no ray meets: they are empty, and so may be what they are part of.
-    // Returns the leaves that are left, a bit each.
+    // Leaves out of the expression the leaves that no ray meets: they are empty, and so may be what they are part of.
+    // `met` are the uses of the others. Returns the leaves that are left, a bit each.
     std::uint64_t reduce(std::uint64_t met, Passages& passages) const {
         constexpr int empty = -1;
-        int stack[deepest_csg_stack];  // where each operand begins in the program
+        int stack[deepest_csg_stack];  // where each operand begins
         int size = 0;
         int end = 0;
-        for (const int step : plan_.program) {
-            if (step >= 0) {
-                const bool is_met = (met >> step & 1) != 0;
-                stack[size++] = is_met ? end : empty;
-                passages.program[end] = step;
-                end += is_met;
-                continue;
-            }
-            const int right = stack[--size];
-            int& left = stack[size - 1];
-            if (left != empty && right != empty) {
-                passages.program[end++] = step;
-            } else if (step == CsgDescription::unite) {
-                left = std::max(left, right);
-            } else if (step == CsgDescription::intersect || left == empty) {
-                const int operand = std::max(left, right);
-                end = operand == empty ? end : operand;
-                left = empty;
+        for (std::uint64_t uses = met | plan_.needed; uses != 0; uses &= uses - 1) {
+            const auto use = static_cast<std::size_t>(std::countr_zero(uses));
+            const bool is_met = (met >> use & 1) != 0;
+            for (int i = plan_.first_step[use]; i < plan_.first_step[use + 1]; ++i) {
+                const CsgStep& step = plan_.steps[static_cast<std::size_t>(i)];
+                const bool is_leaf = step.leaf >= 0;
+                const int right = !is_leaf ? stack[--size] : is_met ? end : empty;
+                if (step.operation == CsgStep::push) {
+                    stack[size++] = right;
+                    passages.steps[end] = step;
+                    end += is_met;
+                    continue;
+                }
+                int& left = stack[size - 1];
+                if (left != empty && right != empty) {
+                    passages.steps[end++] = step;
+                } else if (step.operation == CsgDescription::unite) {
+                    if (right != empty && is_leaf) {
+                        passages.steps[end++] = {step.leaf, CsgStep::push};
+                    }
+                    left = std::max(left, right);
+                } else if (step.operation == CsgDescription::intersect || left == empty) {
+                    const int operand = std::max(left, right);
+                    end = operand == empty ? end : operand;
+                    left = empty;
+                }
             }
         }
-        passages.steps = end;
-        std::uint64_t left = 0;
+        passages.step_count = end;
+        std::uint64_t leaves = 0;
         for (int i = 0; i < end; ++i) {
-            if (passages.program[i] >= 0) {
-                left |= std::uint64_t(1) << passages.program[i];
+            if (passages.steps[i].leaf >= 0) {
+                leaves |= std::uint64_t(1) << passages.steps[i].leaf;
             }
         }
-        return left;
+        return leaves;
     }
 
     // ---- Along rays -------------------------------------------------------------------------------------------------
@@ -277,16 +286,14 @@ class Csg {
     }
 
     void pass_leaves(const Rays<Real>& rays, const L& limit, const Start<Real>& start, Passages& passages) const {
-        const std::uint64_t met = reduce(leaves_met(rays, limit), passages);
+        const std::uint64_t leaves = reduce(uses_met(rays, limit), passages);
         const L infinity = std::numeric_limits<Real>::infinity();
         const Mask<Real> wanted = limit >= L(Real(0));
         passages.count = 0;
-        for (std::size_t i = 0; i < leaves_.size(); ++i) {
+        for (std::uint64_t left = leaves; left != 0; left &= left - 1) {
+            const int i = std::countr_zero(left);
             passages.place[i] = -1;
-            if ((met >> i & 1) == 0) {
-                continue;
-            }
-            const Leaf& leaf = leaves_[i];
+            const Leaf& leaf = leaves_[static_cast<std::size_t>(i)];
             Passage<Real> passage;
             const L between = lists_.visit(leaf.shape, [&](const auto& shape) {
                 return shape.pass(rays, start, plan_.sides.data() + leaf.first_piece, passage);
@@ -304,6 +311,7 @@ class Csg {
                 continue;
             }
             passages.place[i] = passages.count;
+            passages.leaf[passages.count] = i;
             passages.ends[passages.count++] = {select(meets, passage.near, infinity),
                                                select(meets, passage.far, infinity),
                                                passage.near_primitive,
@@ -313,29 +321,38 @@ class Csg {
         }
     }
 
-    // The expression's value just behind distance t.
-    [[gnu::always_inline]] Mask<Real> value_behind(const Passages& passages, L t) const {
+    // The expression's value just behind distance t, and the next distance at which a leaf is met. The stack's top is
+    // not in memory: most operands are combined with it at once.
+    [[gnu::always_inline]] Mask<Real> value_behind(const Passages& passages, const L& t, L& next) const {
+        const L infinity = std::numeric_limits<Real>::infinity();
         Mask<Real> stack[deepest_csg_stack];
+        Mask<Real> top = Mask<Real>::none();
         int size = 0;
-        for (int i = 0; i < passages.steps; ++i) {
-            const int step = passages.program[i];
-            if (step >= 0) {
-                const int place = passages.place[step];
-                if (place < 0) {
-                    stack[size++] = Mask<Real>::none();
-                } else {
-                    const Ends& ends = passages.ends[place];
-                    stack[size++] = ((ends.near <= t) & (t < ends.far)) ^ ends.inverted;
-                }
-                continue;
+        next = infinity;
+        for (int i = 0; i < passages.step_count; ++i) {
+            const CsgStep& step = passages.steps[i];
+            Mask<Real> right = Mask<Real>::none();
+            if (step.leaf < 0) {
+                right = top;
+                top = stack[--size];
+            } else if (const int place = passages.place[step.leaf]; place >= 0) {
+                const Ends& ends = passages.ends[place];
+                const Mask<Real> entered = ends.near <= t;
+                const Mask<Real> not_left = t < ends.far;
+                right = (entered & not_left) ^ ends.inverted;
+                next = min(select(entered, infinity, ends.near), next);
+                next = min(select(not_left, ends.far, infinity), next);
             }
-            const Mask<Real> right = stack[--size];
-            Mask<Real>& left = stack[size - 1];
-            left = step == CsgDescription::unite      ? left | right
-                   : step == CsgDescription::subtract ? left & ~right
-                                                      : left & right;
+            if (step.operation == CsgStep::push) {
+                stack[size++] = top;
+                top = right;
+            } else {
+                top = step.operation == CsgDescription::unite      ? top | right
+                      : step.operation == CsgDescription::subtract ? top & ~right
+                                                                   : top & right;
+            }
         }
-        return stack[0];
+        return top;
     }
 
     // Out of line, for others' sake: it is long.
@@ -347,27 +364,21 @@ class Csg {
             return false;
         }
         const L infinity = std::numeric_limits<Real>::infinity();
-        L at = rays.t_min;
+        L next;
         crossing.t = infinity;
-        crossing.inside = value_behind(passages, at);
+        crossing.inside = value_behind(passages, rays.t_min, next);
         // Beyond it, but for what may tie with it, nothing is asked.
         const L last = limit + L(most_blur<Real>) * (limit + rays.reach);
         Mask<Real> open = limit >= L(Real(0));
         for (;;) {
-            L next = infinity;
-            for (int i = 0; i < passages.count; ++i) {
-                const Ends& ends = passages.ends[i];
-                next = min(select(ends.near > at, ends.near, infinity), next);
-                next = min(select(ends.far > at, ends.far, infinity), next);
-            }
             open &= (next < infinity) & ~(next > last);  // it may be no number
             if (!any(open)) {
                 break;
             }
-            const Mask<Real> changes = open & (value_behind(passages, next) ^ crossing.inside);
-            crossing.t = select(changes, next, crossing.t);
+            const L at = next;
+            const Mask<Real> changes = open & (value_behind(passages, at, next) ^ crossing.inside);
+            crossing.t = select(changes, at, crossing.t);
             open &= ~changes;
-            at = next;
         }
         if (!any(crossing.t < infinity)) {
             return false;
@@ -420,25 +431,23 @@ class Csg {
         Event events[2 * most_csg_leaves];
         int count = 0;
         std::uint64_t inside = 0;  // of which leaves the ray is
-        for (std::size_t i = 0; i < leaves_.size(); ++i) {
-            if (passages.place[i] < 0) {
-                continue;
-            }
-            const Ends& ends = passages.ends[passages.place[i]];
+        for (int i = 0; i < passages.count; ++i) {
+            const Ends& ends = passages.ends[i];
+            const int leaf = passages.leaf[i];
             const bool inverted = ends.inverted[lane];
             bool in = inverted;
             const auto add = [&](Real t, int primitive, bool enters) {
                 if (t <= rays.t_min[lane]) {
                     in = enters;
                 } else if (std::isfinite(t)) {
-                    events[count++] = {t, static_cast<int>(i), primitive, enters};
+                    events[count++] = {t, leaf, primitive, enters};
                 }
             };
             if (ends.near[lane] < ends.far[lane]) {
                 add(ends.near[lane], ends.near_primitive[lane], !inverted);
                 add(ends.far[lane], ends.far_primitive[lane], inverted);
             }
-            inside |= std::uint64_t(in) << i;
+            inside |= std::uint64_t(in) << leaf;
         }
         // By distance, and the first leaf first.
         for (int i = 1; i < count; ++i) {

@@ -59,6 +59,28 @@ std::vector<Side> sides_of(const std::vector<Row>& surfaces) {
     return sides;
 }
 
+void add_steps(const CsgDescription& csg, CsgPlan& plan) {
+    plan.uses.resize(csg.leaves.size());
+    for (std::size_t i = 0; i < csg.program.size(); ++i) {
+        const int step = csg.program[i];
+        if (step < 0) {
+            plan.steps.push_back({-1, step});
+            plan.needed |= std::uint64_t(1) << (plan.first_step.size() - 1);
+            continue;
+        }
+        const std::uint64_t use = std::uint64_t(1) << plan.first_step.size();
+        plan.uses[static_cast<std::size_t>(step)] |= use;
+        plan.first_step.push_back(static_cast<int>(plan.steps.size()));
+        const bool is_combined = i > 0 && i + 1 < csg.program.size() && csg.program[i + 1] < 0;
+        const int operation = is_combined ? csg.program[++i] : CsgStep::push;
+        plan.steps.push_back({step, operation});
+        if (operation == CsgStep::push || operation == CsgDescription::intersect) {
+            plan.needed |= use;
+        }
+    }
+    plan.first_step.push_back(static_cast<int>(plan.steps.size()));
+}
+
 }  // namespace
 
 CsgPlan::CsgPlan() = default;
@@ -69,6 +91,7 @@ CsgPlan::~CsgPlan() = default;
 CsgPlan plan_csg(const CsgDescription& csg, int digits) {
     CsgPlan plan;
     plan.program = csg.program;
+    add_steps(csg, plan);
     std::vector<Row> surfaces;
     for (std::size_t i = 0; i < csg.leaves.size(); ++i) {
         plan.first_piece.push_back(static_cast<int>(surfaces.size()));

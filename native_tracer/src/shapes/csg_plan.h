@@ -16,11 +16,23 @@ struct Side {
     bool reversed;  // its inner side is the surface's outer one
 };
 
+// A step of an expression in reverse Polish notation: an operand is pushed, or at once combined with the one below.
+struct CsgStep {
+    static constexpr int push = 0;  // another operation is one of CsgDescription's
+    int leaf;                       // or -1: the operand is there
+    int operation;
+};
+
 struct CsgPlan {
     std::vector<int> program;
-    std::vector<int> first_piece;    // of each leaf, and their number
-    std::vector<int> leaf_of_piece;  // pieces are the leaves' primitives, in order
-    std::vector<Side> sides;         // of the pieces
+    // The same program. Leaves are used once or more: each use has a number, in order, and steps that begin with it.
+    std::vector<CsgStep> steps;
+    std::vector<int> first_step;      // of each use, and their number
+    std::vector<std::uint64_t> uses;  // of each leaf, a bit each
+    std::uint64_t needed = 0;         // uses that make a difference also where the leaf is empty
+    std::vector<int> first_piece;     // of each leaf, and their number
+    std::vector<int> leaf_of_piece;   // pieces are the leaves' primitives, in order
+    std::vector<Side> sides;          // of the pieces
     // A tree over the boxes of leaves, where there are many, and the leaves outside it; see BoxTest.
     Bvh tree;
     std::vector<int> apart;
