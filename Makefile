@@ -20,7 +20,7 @@ OUT ?= out/$(basename $(notdir $(SCENE))).ppm
 WIDTH ?= 800
 HEIGHT ?= 600
 SECONDS ?= 60
-NATIVE_TESTS := $(wildcard tests/test_native_*.py tests/test_bvh.py tests/test_halfspaces.py tests/test_incidence.py tests/test_student.py)
+NATIVE_TESTS := $(wildcard tests/test_native_*.py tests/test_bvh.py tests/test_halfspaces.py tests/test_student.py)
 TESTS ?= $(NATIVE_TESTS) tests/test_library.py tests/test_parser.py tests/test_compare.py
 
 BIN := .venv/bin
