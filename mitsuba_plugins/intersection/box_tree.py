@@ -44,12 +44,14 @@ class Walk:
 class BoxTree:
     """Single-precision boxes, which are rounded outward: what they let through is exact."""
 
-    def __init__(self, types: Real, boxes: list[Box | None]) -> None:
-        """Take the boxes of all objects; None of those that have no bounds."""
+    def __init__(self, types: Real, boxes: list[Box | None], objects: list[int] | None = None) -> None:
+        """Take the boxes of all objects, or of parts of them; None of those that have no bounds. Of parts take the
+        objects, too.
+        """
         self._types = types
         scale = unit_scale(abs(x) for box in boxes if box is not None for corner in box for x in corner)
         self._scale = types.Float(scale)
-        self._nodes, self._node_count = _nodes(boxes, scale)
+        self._nodes, self._node_count = _nodes(boxes, list(range(len(boxes))) if objects is None else objects, scale)
         dr.make_opaque(self._node_count, self._scale)
 
     def walk(self, ray: Ray) -> Walk:
@@ -72,7 +74,8 @@ class BoxTree:
 
     @syntax
     def next(self, walk: Walk, node: Any, limit: Any, skipped: Any, active: Any) -> tuple[Any, Any]:
-        """The next object, from `node` on, whose box rays enter before `limit`, or NOTHING, and the node to go on at.
+        """The next object or part, from `node` on, whose box rays enter before `limit`, or NOTHING, and the node to go
+        on at.
 
         All rays walk until each is at a leaf, so that they are tested against surfaces together. The object `skipped`
         is passed over.
@@ -90,10 +93,9 @@ class BoxTree:
             near, far = dr.max(enter), dr.min(leave)
             # Of an origin beyond all measure these are NaN: then every box counts as met.
             meets = ~(near > dr.minimum(far, limit)) & ~(far < 0)
-            item = dr.reinterpret_array(mi.UInt32, rest.w)
-            index = dr.select(walking & meets & (item != skipped), item, index)
-            following = walk.start + dr.reinterpret_array(mi.UInt32, rest.z)
-            node = dr.select(meets & (item == NOTHING), node + 1, following)
+            link, item = dr.reinterpret_array(mi.UInt32, rest.z), dr.reinterpret_array(mi.UInt32, rest.w)
+            index = dr.select(walking & meets & (link != skipped), item, index)
+            node = dr.select(meets | (item != NOTHING), node + 1, walk.start + link)
             walking &= (index == NOTHING) & (node < walk.end)
         return index, node
 
@@ -103,17 +105,17 @@ def _octant(d: Any) -> Any:
     return sum(dr.select(component < 0, mi.UInt32(1 << axis), 0) for axis, component in enumerate(d))
 
 
-def _nodes(boxes: list[Box | None], scale: float) -> tuple[Any, Any]:
+def _nodes(boxes: list[Box | None], objects: list[int], scale: float) -> tuple[Any, Any]:
     """The nodes of all octants, and the number of an octant's.
 
-    A node is two rows of four: the corner of its box, times the scale, that rays of the octant reach first, and the one
-    they reach last, the link, and the object of a leaf, or NOTHING. Unbounded surfaces are leaves before the tree's
-    root, with boxes without bounds.
+    A node is two rows of four: the corner of its box, times the scale, that rays of the octant reach first, the one
+    they reach last, the link, and NOTHING. A leaf, which the next node follows in any case, has its object there, and
+    which of the boxes it is. Unbounded surfaces are leaves before the tree's root, with boxes without bounds.
     """
     bounded = [i for i, box in enumerate(boxes) if box is not None]
     unbounded = [i for i, box in enumerate(boxes) if box is None]
-    numbers = np.array([boxes[i] for i in bounded], dtype=np.float64).reshape(-1, 2, 3) * scale
-    tree = threaded_bvh(numbers[:, 0], numbers[:, 1])
+    corners = np.array([boxes[i] for i in bounded], dtype=np.float64).reshape(-1, 2, 3) * scale
+    tree = threaded_bvh(corners[:, 0], corners[:, 1])
     first, count = len(unbounded), len(unbounded) + tree.size
     low = np.full((8, count, 3), -np.inf, dtype=np.float32)
     high = np.full((8, count, 3), np.inf, dtype=np.float32)
@@ -126,9 +128,11 @@ def _nodes(boxes: list[Box | None], scale: float) -> tuple[Any, Any]:
     nodes[..., 0:3] = np.where(negative, high, low)
     nodes[..., 3:6] = np.where(negative, low, high)
     words = nodes.view(np.uint32)
-    words[:, :first, 6], words[:, :first, 7] = np.arange(1, first + 1), unbounded
+    words[:, :first, 7] = unbounded
     words[:, first:, 6] = first + tree.skip.reshape(8, tree.size)
     # NO_ITEM becomes NOTHING.
-    objects = np.array([*bounded, NOTHING], dtype=np.uint32)
-    words[:, first:, 7] = objects[np.minimum(tree.item, len(bounded))].reshape(8, tree.size)
+    numbers = np.array([*bounded, NOTHING], dtype=np.uint32)
+    words[:, first:, 7] = numbers[np.minimum(tree.item, len(bounded))].reshape(8, tree.size)
+    leaf = words[..., 7] != NOTHING
+    words[leaf, 6] = np.array(objects, dtype=np.uint32)[words[leaf, 7]]
     return column(mi.Float, nodes), mi.UInt32(count)

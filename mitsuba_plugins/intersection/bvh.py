@@ -7,6 +7,7 @@ import mitsuba as mi
 
 from mitsuba_plugins.intersection.box_tree import BoxTree
 from mitsuba_plugins.intersection.contacts import LightContacts
+from mitsuba_plugins.intersection.faces import Parts
 from mitsuba_plugins.intersection.geometry import Surface
 from mitsuba_plugins.intersection.primitives import Primitives
 from mitsuba_plugins.intersection.rays import NOTHING, Ray, Real, largest
@@ -20,8 +21,11 @@ class BvhSurfaces(ExactSurfaces):
 
     def __init__(self, types: Real, surfaces: list[Surface], primitives: Primitives, contacts: LightContacts) -> None:
         self._types = types
-        self._tree = BoxTree(types, [surface.swept for surface in surfaces])
-        super().__init__(primitives, contacts, self._tree)
+        self._parts = Parts(types, surfaces, primitives)
+        self._tree = BoxTree(types, self._parts.boxes, self._parts.objects)
+        # By the rules for ties objects are met as a whole.
+        objects = BoxTree(types, [surface.swept for surface in surfaces]) if self._parts.any_faces else self._tree
+        super().__init__(primitives, contacts, objects)
 
     def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any, Any]:
         """As `ExactSurfaces` has it."""
@@ -35,14 +39,18 @@ class BvhSurfaces(ExactSurfaces):
         _, found, _, close = search(ray, distance, light, active)
         return found, close
 
-    def _start(self, ray: Ray, t: Any, active: Any) -> tuple[Any, Any, Any, Any, Any, Any]:
+    def _start(self, ray: Ray, t: Any, active: Any) -> tuple[Any, Any, Any, Any, Any, Any, Any]:
         """How a search begins: the largest coordinate of rays' origins, the limit for hits before `t`, the walk and its
-        first node, what is tested before, and which rays search.
+        first node, what is tested before, the object that is then passed over, and which rays search.
         """
         walk = self._tree.walk(ray)
         # First the object that the ray travels inside, or leaves: a convex one it does not meet again.
-        index = ray.object if self.primitives.any_concave else dr.select(ray.inside, ray.object, NOTHING)
-        return largest(ray.o), self._tree.limit(t), walk, mi.UInt32(walk.start), index, mi.Bool(active)
+        whole, skipped = self._parts.whole(ray.object), ray.object
+        part = whole if self.primitives.any_concave else dr.select(ray.inside, whole, NOTHING)
+        if self._parts.any_faces:
+            # From inside it meets the faces.
+            skipped = dr.select(ray.inside & (whole == NOTHING), NOTHING, skipped)
+        return largest(ray.o), self._tree.limit(t), walk, mi.UInt32(walk.start), part, skipped, mi.Bool(active)
 
     @syntax
     def _search(self, ray: Ray, distance: Any, light: Any, active: Any) -> tuple[Any, Any, Any, Any]:
@@ -53,11 +61,12 @@ class BvhSurfaces(ExactSurfaces):
         primitive_best = dr.zeros(mi.UInt32, width)
         t_second = dr.full(self._types.Float, dr.inf, width) if light is None else None
         close = dr.full(mi.Bool, False, width)
-        reach, limit, walk, node, index, searching = self._start(ray, t_best, active)
-        while dr.hint(searching, exclude=[self, ray, distance, light, reach, walk]):
-            tested = searching & (index != NOTHING)
-            if dr.hint(tested, exclude=[self, ray, distance, light, reach, walk, index, tested]):
-                crossing = self.primitives.intersect(ray, index, tested, reach, which_piece=light is None)
+        reach, limit, walk, node, part, skipped, searching = self._start(ray, t_best, active)
+        while dr.hint(searching, exclude=[self, ray, distance, light, reach, walk, skipped]):
+            tested = searching & (part != NOTHING)
+            index = self._parts.object(part, tested)
+            if dr.hint(tested, exclude=[self, ray, distance, light, reach, walk, skipped, part, index, tested]):
+                crossing = self._parts.intersect(ray, part, index, tested, reach, light is None)
                 t, primitive = crossing.t, crossing.primitive
                 close |= tested & (crossing.close | (t < most_blur(t) * reach))
                 # Of surfaces at the same distance the first counts.
@@ -74,8 +83,8 @@ class BvhSurfaces(ExactSurfaces):
                 limit = self._tree.limit(t_best)
             if dr.hint(light is not None, mode="scalar"):
                 searching &= object_best == NOTHING
-            index, node = self._tree.next(walk, node, limit, ray.object, searching)
-            searching &= index != NOTHING
+            part, node = self._tree.next(walk, node, limit, skipped, searching)
+            searching &= part != NOTHING
         if dr.hint(light is None, mode="scalar"):
             near = most_blur(t_best) * (t_best + reach)
             close |= (t_second - t_best <= near) | (t_best < near)
@@ -90,10 +99,10 @@ class BvhSurfaces(ExactSurfaces):
         other = dr.full(self._types.Float, dr.inf, width)  # the least that the distance of any other may be
         object_best, primitive_best = dr.full(mi.UInt32, NOTHING, width), dr.zeros(mi.UInt32, width)
         close = dr.full(mi.Bool, False, width)
-        reach, limit, walk, node, index, searching = self._start(ray, t_best, active)
-        while dr.hint(searching, exclude=[self, ray, walk, distance, light, reach]):
+        reach, limit, walk, node, index, skipped, searching = self._start(ray, t_best, active)
+        while dr.hint(searching, exclude=[self, ray, walk, distance, light, reach, skipped]):
             tested = searching & (index != NOTHING)
-            if dr.hint(tested, exclude=[self, ray, distance, light, reach, walk, index, tested]):
+            if dr.hint(tested, exclude=[self, ray, distance, light, reach, walk, skipped, index, tested]):
                 crossing = self.primitives.intersect(ray, index, tested, reach, which_piece=light is None)
                 t = crossing.t
                 hits = tested & (t < dr.inf)
@@ -115,7 +124,7 @@ class BvhSurfaces(ExactSurfaces):
                 limit = self._tree.limit(t_best + error)
             if dr.hint(light is not None, mode="scalar"):
                 searching &= object_best == NOTHING
-            index, node = self._tree.next(walk, node, limit, ray.object, searching)
+            index, node = self._tree.next(walk, node, limit, skipped, searching)
             searching &= index != NOTHING
         if dr.hint(light is None, mode="scalar"):
             close |= (t_best < dr.inf) & ~(t_best + error < other)
