@@ -151,6 +151,19 @@ def test_crowds(seed, count, scale, shift, sharp, reach):
     assert check(scene, 20, 15, cutoff=1 / 64, max_depth=4) > 20 * 15
 
 
+def test_a_ray_along_planes_that_goes_on_alone():
+    """What it meets only the rules for ties say."""
+    scene = new_scene((0.9, 0.95, 1.0))
+    white, matte = scene.add_solid(WHITE), add_finish(scene, ka=0.5)
+    for place in range(64):
+        corner = [(place >> shift) % 4 - 1.75 for shift in (0, 2, 4)]
+        scene.add_polyhedron(white, matte, box(corner, [c + 0.5 for c in corner]))
+    eye, direction = (-1.5, -0.6875, 5), normalized((0, -0.25, -1))
+    look(scene, eye, direction)
+    check(scene, 1, 1, cutoff=0, max_depth=0, corner=False)
+    assert trace_ray(scene, eye, direction, search="bvh")["hit"]["plane"] == 5
+
+
 def test_a_large_crowd():
     assert check(crowd(1, 1000), 40, 30, cutoff=1 / 64, max_depth=4) > 4000
 

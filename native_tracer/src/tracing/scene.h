@@ -340,10 +340,12 @@ struct Scene {
             Crossing<Real> crossing;
             Mask<Real> may_tie = Mask<Real>::none();
             const Lanes<Real> its_limit = select(here, limit, Lanes<Real>(Real(-1)));
-            if (!shape.template intersect<ties == Ties::found>(at_rest(shape, rays), its_limit, crossing, may_tie)) {
+            const bool crosses =
+                shape.template intersect<ties == Ties::found>(at_rest(shape, rays), its_limit, crossing, may_tie);
+            close |= may_tie & here;  // of a ray along a plane, it may be all that is known
+            if (!crosses) {
                 return true;
             }
-            close |= may_tie & here;
             crossing.t = select(here, crossing.t, Lanes<Real>(std::numeric_limits<Real>::infinity()));
             return visit(shape, crossing);
         };
