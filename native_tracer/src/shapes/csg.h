@@ -529,17 +529,18 @@ class Csg {
     // The expression's value inside these leaves, its stack the bits of a number.
     bool value(std::uint64_t inside) const {
         std::uint64_t stack = 0;
-        for (const int step : plan_.program) {
-            if (step >= 0) {
-                stack = stack << 1 | (inside >> step & 1);
+        for (const CsgStep& step : plan_.steps) {
+            const std::uint64_t right = (step.leaf >= 0 ? inside >> step.leaf : stack) & 1;
+            stack >>= step.leaf >= 0 ? 0 : 1;
+            if (step.operation == CsgStep::push) {
+                stack = stack << 1 | right;
                 continue;
             }
-            const std::uint64_t right = stack & 1;
-            const std::uint64_t left = stack >> 1 & 1;
-            const std::uint64_t result = step == CsgDescription::unite      ? left | right
-                                         : step == CsgDescription::subtract ? left & ~right
-                                                                            : left & right;
-            stack = stack >> 2 << 1 | result;
+            const std::uint64_t left = stack & 1;
+            const std::uint64_t result = step.operation == CsgDescription::unite      ? left | right
+                                         : step.operation == CsgDescription::subtract ? left & ~right
+                                                                                      : left & right;
+            stack = stack >> 1 << 1 | result;
         }
         return stack != 0;
     }

@@ -90,7 +90,6 @@ CsgPlan::~CsgPlan() = default;
 
 CsgPlan plan_csg(const CsgDescription& csg, int digits) {
     CsgPlan plan;
-    plan.program = csg.program;
     add_steps(csg, plan);
     std::vector<Row> surfaces;
     for (std::size_t i = 0; i < csg.leaves.size(); ++i) {

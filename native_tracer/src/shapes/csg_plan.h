@@ -24,8 +24,7 @@ struct CsgStep {
 };
 
 struct CsgPlan {
-    std::vector<int> program;
-    // The same program. Leaves are used once or more: each use has a number, in order, and steps that begin with it.
+    // The program. Leaves are used once or more: each use has a number, in order, and steps that begin with it.
     std::vector<CsgStep> steps;
     std::vector<int> first_step;      // of each use, and their number
     std::vector<std::uint64_t> uses;  // of each leaf, a bit each
