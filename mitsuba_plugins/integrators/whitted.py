@@ -115,8 +115,8 @@ class Whitted(mi.SamplingIntegrator):
        - ``analytic``: intersect spheres and half-spaces in the kernel, each with code of its own; ``bvh``: through a
          tree of boxes; ``mesh``: let Embree or OptiX find which of the scene's shapes is hit and compute where from
          the exact surface; ``offset``, ``ulp``: believe Embree or OptiX, and start rays off the surface by Mitsuba's
-         own offset or Waechter and Binder's; ``auto``: ``analytic`` for small scenes and few bounded objects, else
-         ``bvh`` (Default: auto)
+         own offset or Waechter and Binder's; ``auto``: ``analytic`` for small scenes and few bounded objects on a CPU,
+         else ``bvh`` (Default: auto)
 
      * - precision
        - |string|
