@@ -16,11 +16,11 @@ from converter.scene.settings import Settings
 from converter.studies.family import Case, Family, Truth
 from converter.studies.worker import CERTIFICATE, DrawingFailed, TookTooLong
 
-LONGEST = 20.0
-"""Seconds after which a picture is given up, and its method for the harder values of the family."""
-LONGEST_TRUTH = 120.0
+LONGEST = 40.0
+"""Seconds of CPU time after which a picture is given up, and its method for the harder values of the family."""
+LONGEST_TRUTH = 240.0
 """The same of a truth that is drawn."""
-LONGEST_CERTIFICATE = 30.0
+LONGEST_CERTIFICATE = 60.0
 """The same of a truth that is proven."""
 FEW = 0.01
 """Share of the pixels up to which wrong ones are single ones, at edges: what a method's description tells of."""
@@ -37,7 +37,7 @@ class Draws(Protocol):
     """A `Worker`, or what stands in for one."""
 
     def render(self, method: str, variant: str | None, scene: Scene, settings: Settings, seconds: float) -> Pixels:
-        """The picture of `scene` by a method."""
+        """The picture of `scene` by a method, within so many seconds of CPU time."""
         ...
 
 

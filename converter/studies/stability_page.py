@@ -4,7 +4,7 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from converter.files import replacing
-from converter.studies.stability import FamilyStudy
+from converter.studies.stability import LONGEST, FamilyStudy
 from converter.studies.stability_figure import draw_stability
 from converter.studies.stability_pictures import Failure, draw_failures, failures_to_show
 from converter.studies.stability_report import LEGEND, failures, silences, table_header, table_rows
@@ -41,7 +41,8 @@ def _page(studies: Sequence[FamilyStudy], shown: Sequence[Failure]) -> str:
 Made by `make stability`: every method of the table draws every family's scenes, each of which pushes one number toward
 trouble and has a true picture: by a closed form, by [certificates](certify.md), or, where those prove nothing and of
 scenes that are sampled, by the native tracer in long double. A picture holds if no pixel differs from the truth by more
-than 1/255, but for the few that the family allows.
+than 1/255, but for the few that the family allows. A method has {LONGEST:g} s of CPU time for a picture; where that is
+not enough, it is not asked for harder ones.
 
 Where `whitted render` and `whitted inspect` see that a scene enters a region in which a method is known to fail, they
 say so, and name the method that holds; of POV-Ray nobody is warned. The study asks for these warnings, too:

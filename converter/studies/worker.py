@@ -20,6 +20,8 @@ CERTIFICATE = "certificate"
 """In the place of a method: the colours that are proven, NaN where none is."""
 STARTING = 60.0
 """Seconds that it may take to start and to load what a first picture needs, beside the picture's own."""
+PATIENCE = 10.0
+"""Seconds to wait for each of CPU time that a picture may take: a machine is loaded, or a process sleeps for ever."""
 
 
 class DrawingFailed(Exception):  # noqa: N818 - what it says
@@ -27,7 +29,7 @@ class DrawingFailed(Exception):  # noqa: N818 - what it says
 
 
 class TookTooLong(DrawingFailed):
-    """Nor had it when its time was over."""
+    """Nor had it when its time was over; the message says which time."""
 
 
 class Worker:
@@ -38,34 +40,40 @@ class Worker:
         self._pipe: Connection | None = None
 
     def render(self, method: str, variant: str | None, scene: Scene, settings: Settings, seconds: float) -> Pixels:
-        """The picture of `scene` by a method, by its name, or by `CERTIFICATE`.
+        """The picture of `scene` by a method, by its name, or by `CERTIFICATE`, within `seconds` of CPU time.
+
+        CPU time is that of all threads, and of processes that the method starts: a loaded machine changes it little.
+        Where the system has no timer of it (Windows), a picture is judged when it is there.
 
         Raises:
             DrawingFailed: there is none, for a reason that the method gave, or since its process ended.
-            TookTooLong: there is none after so many seconds.
+            TookTooLong: it took more CPU time, or is not there after `PATIENCE` times as many seconds.
             KeyboardInterrupt: Ctrl-C; the process is gone then.
 
         """
-        patience = seconds
+        patience = PATIENCE * seconds
         try:
             if self._pipe is None:
                 self._start()
                 patience += STARTING
             assert self._pipe is not None
-            self._pipe.send((method, variant, scene, settings))
+            self._pipe.send((method, variant, scene, settings, seconds))
             if not self._pipe.poll(patience):
                 self.stop()
-                raise TookTooLong(f"no picture within {seconds:g} s")
+                raise TookTooLong(f"no picture within {patience:g} s")
             drawn = self._pipe.recv()
         except (EOFError, ConnectionError):
             code = self._exit_code()
             self.stop()
-            raise DrawingFailed(f"its process ended: {_why(code)}") from None
+            why = _why(code)
+            if why == "SIGPROF":
+                raise _spent(seconds) from None
+            raise DrawingFailed(f"its process ended: {why}") from None
         except KeyboardInterrupt:
             self.stop()
             raise
-        if isinstance(drawn, str):
-            raise DrawingFailed(drawn)
+        if isinstance(drawn, DrawingFailed):
+            raise drawn
         pixels: Pixels = drawn
         return pixels
 
@@ -110,6 +118,10 @@ def _why(code: int | None) -> str:
     return f"exit status {code}"
 
 
+def _spent(seconds: float) -> TookTooLong:
+    return TookTooLong(f"no picture within {seconds:g} s of CPU time")
+
+
 # ---- In the other process --------------------------------------------------------------------------------------------
 
 
@@ -129,32 +141,64 @@ def _work(pipe: Connection) -> None:
     renderers: dict[tuple[str, str | None], Any] = {}
     while True:
         try:
-            method, variant, scene, settings = pipe.recv()
+            method, variant, scene, settings, seconds = pipe.recv()
         except EOFError:
             return
-        pipe.send(_draw(renderers, method, variant, scene, settings))
+        _end_after(seconds)
+        drawn = _draw(renderers, method, variant, scene, settings, seconds)
+        _end_after(0.0)
+        pipe.send(drawn)
 
 
 def _draw(
-    renderers: dict[tuple[str, str | None], Any], name: str, variant: str | None, scene: Scene, settings: Settings
-) -> Pixels | str:
+    renderers: dict[tuple[str, str | None], Any],
+    name: str,
+    variant: str | None,
+    scene: Scene,
+    settings: Settings,
+    seconds: float,
+) -> Pixels | DrawingFailed:
     """The picture, or why there is none. A method that raises whatever error has failed: to find that is the aim."""
+    begun = _cpu_time()
+    drawn: Pixels | DrawingFailed
+    try:
+        drawn = _picture(renderers, name, variant, scene, settings)
+    except MemoryError:
+        drawn = DrawingFailed("not enough memory")
+    except Exception as error:
+        drawn = DrawingFailed(f"{type(error).__name__}: {error}".splitlines()[0])
+    # The timer leaves out what other processes take, as POV-Ray's.
+    return _spent(seconds) if _cpu_time() - begun > seconds else drawn
+
+
+def _picture(
+    renderers: dict[tuple[str, str | None], Any], name: str, variant: str | None, scene: Scene, settings: Settings
+) -> Pixels:
     from converter.renderers.methods import find_method
 
-    try:
-        if name == CERTIFICATE:
-            from converter.certify.certificate import certify
+    if name == CERTIFICATE:
+        from converter.certify.certificate import certify
 
-            return certify(scene, settings).colors.astype(np.float32)
-        method = find_method(name)
-        if (name, variant) not in renderers:
-            renderers[name, variant] = method.renderer(variant)
-        rendering = renderers[name, variant].render(scene, method.settings(settings))
-        return np.array(rendering.pixels, dtype=np.float32)
-    except MemoryError:
-        return "not enough memory"
-    except Exception as error:
-        return f"{type(error).__name__}: {error}".splitlines()[0]
+        return certify(scene, settings).colors.astype(np.float32)
+    method = find_method(name)
+    if (name, variant) not in renderers:
+        renderers[name, variant] = method.renderer(variant)
+    rendering = renderers[name, variant].render(scene, method.settings(settings))
+    return np.array(rendering.pixels, dtype=np.float32)
+
+
+def _cpu_time() -> float:
+    """Seconds of this process, and of those that it started and that have ended."""
+    return sum(os.times()[:4])
+
+
+def _end_after(seconds: float) -> None:
+    """Let SIGPROF end this process after so much CPU time of its own; 0 is never."""
+    import signal
+
+    if hasattr(signal, "setitimer"):
+        signal.signal(signal.SIGPROF, signal.SIG_DFL)
+        signal.setitimer(signal.ITIMER_PROF, seconds)
 
 
 def _limit_memory() -> None:
