@@ -228,3 +228,43 @@ def test_boxes_of_what_is_cut_off_lose_no_hit(precision):
     look(scene, (0, 0, 6), (0, 0, -1))
     brute, tree = (draw(scene, precision=precision, search=search) for search in ("brute", "bvh"))
     assert bytes(brute.pixels) == bytes(tree.pixels)
+
+
+# ---- Light -----------------------------------------------------------------------------------------------------------
+
+
+@pytest.mark.parametrize(("light", "blocker"), [((0, 1.5, 0), 1), ((0, 30, 0), 0)])
+def test_of_what_is_in_the_way_of_a_light_outside_it_is_the_csg_seen_from_within(light, blocker):
+    scene = new_scene()
+    matte, white = add_finish(scene, kd=1), scene.add_solid(WHITE)
+    scene.add_csg(white, matte, [CYLINDER, ("polyhedron", [(0, 1, 0, -2), (0, -1, 0, -2)])], [0, 1, INTERSECT])
+    scene.add_sphere(white, matte, (0, 0.5, 0), 0.25)
+    scene.add_light(light, WHITE, CONSTANT)
+    ray = trace_ray(scene, (0, -1, 0), (0, -1, 0))
+    assert ray["hit"]["lights"][0]["shadowed_by"] == blocker
+
+
+@pytest.mark.parametrize("light", [(0, 0.5, 0), (0.9, 1.9, 0.9)])
+def test_a_light_in_the_box_of_a_csg_shines_through_its_hole(light):
+    """The box is not the body: what is drilled out, or rounded off, is lit from there."""
+    scene = new_scene()
+    matte, white = add_finish(scene, kd=1), scene.add_solid(WHITE)
+    hole = ("quadric", (1, 0, 1, 0, 0, 0, 0, 0, 0, -0.25))
+    room = ("polyhedron", box((-1, -2, -1), (1, 2, 1)))
+    scene.add_csg(white, matte, [room, hole], [0, 1, SUBTRACT])
+    scene.add_light(light, WHITE, CONSTANT)
+    wall = trace_ray(scene, (0, 0, 0), (-1, 0, 0))
+    assert wall["hit"]["lights"][0]["shadowed_by"] == (None if light[0] == 0 else 0)
+
+
+def test_a_disc_that_reaches_into_the_box_lights_the_body_from_within():
+    scene = new_scene()
+    scene.add_csg(
+        scene.add_solid(WHITE), add_finish(scene, kd=1),
+        [("quadric", (1, 0, 1, 0, 0, 0, 0, 0, 0, -4)), ("polyhedron", [(0, 1, 0, -10), (0, -1, 0, -2)])],
+        [0, 1, INTERSECT],
+    )  # fmt: skip
+    scene.add_light((2.25, 2.25, 0), WHITE, CONSTANT, 0.75)
+    look(scene, (-1.25, 0, 0), (0, -1, 0))
+    seen = {draw(scene, 1, 1, seed=seed, corner=False).pixels[0, 0, 0] > 0 for seed in range(64)}
+    assert seen == {False, True}

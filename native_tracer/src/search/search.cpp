@@ -90,7 +90,6 @@ void add_leaf_tree(const CsgDescription& csg, int digits, CsgPlan& plan) {
     }
     plan.growth = boxes.growth;
     plan.reach = boxes.reach;
-
     plan.tree = boxes.tree(2);
 }
 
