@@ -228,7 +228,7 @@ class Whitted(mi.SamplingIntegrator):
         primitives = Primitives(types, self.surfaces)
         # These, too, are read anew each time: they are what mitsuba.traverse lets a user change.
         lights = Lights(types, scene.emitters())
-        at_lights = LightContacts(types, contacts, lights.positions, lights.radii)
+        at_lights = LightContacts(types, contacts, lights.positions, lights.radii, self._entered())
         on_something = hasattr(sensor, "eye") and not getattr(sensor, "has_lens", False)
         return {
             "types": types,
@@ -241,6 +241,13 @@ class Whitted(mi.SamplingIntegrator):
             "_errors_of_primary_rays": camera_errors(types, sensor),
             "_tracer": tracer_of(self.intersections, types, scene, self.surfaces, primitives, at_lights),
         }
+
+    def _entered(self):
+        """The objects that rays are refracted into."""
+        if not self.refraction:
+            return []
+        glass = {name for name, bsdf in self._bsdfs.by_name.items() if bsdf.kt[0] > 0}
+        return [k for k, surface in enumerate(self.surfaces) if surface.material in glass]
 
     def _fits_single(self):
         """Whether all errors of single precision are bounded; not where anything is sampled, nor of rays that start on
