@@ -45,7 +45,9 @@ def silhouette_margin(shape: Csg, origin: Floats, direction: Floats) -> float:
     for k, leaf in enumerate(program.leaves):
         kind = primitive_kind(leaf)
         found = [at.t for at in kind.intersections(leaf, origin, direction)]
-        if not found or any(_matters(program, k, origin + t * direction) for t in [*found, sum(found) / len(found)]):
+        if not found or any(
+            _matters(program, k, _inside(program, origin + t * direction)) for t in [*found, sum(found) / len(found)]
+        ):
             result = min(result, kind.silhouette_margin(leaf, origin, direction))
     return result
 
@@ -57,7 +59,7 @@ def edge_margin(shape: Csg, origin: Floats, direction: Floats) -> float:
     margins = [
         primitive_kind(program.leaves[k]).edge_margin(program.leaves[k], origin, direction)
         for k, at in crossings
-        if _matters(program, k, origin + at.t * direction)
+        if _matters(program, k, _inside(program, origin + at.t * direction))
     ]
     return min(margins, default=math.inf)
 
@@ -119,9 +121,8 @@ def _crossings(program: Program, origin: Floats, direction: Floats) -> list[_Cro
     ]
 
 
-def _matters(program: Program, leaf: int, p: Floats) -> bool:
-    """Whether it changes anything near a point whether that is inside of a leaf."""
-    inside = _inside(program, p)
+def _matters(program: Program, leaf: int, inside: Sequence[bool]) -> bool:
+    """Whether it changes anything near a point, inside of these leaves, whether it is inside of one of them."""
     return len({program.value([*inside[:leaf], value, *inside[leaf + 1 :]]) for value in (False, True)}) == 2
 
 
@@ -132,7 +133,8 @@ def _inside(program: Program, p: Floats) -> Sequence[bool]:
 
 def _distances(program: Program, p: Floats) -> Iterator[tuple[float, int]]:
     """Margins of a point to the surfaces of leaves that matter there, or of all if none does."""
-    matter = [k for k in range(len(program.leaves)) if _matters(program, k, p)]
+    inside = _inside(program, p)
+    matter = [k for k in range(len(program.leaves)) if _matters(program, k, inside)]
     for k in matter or range(len(program.leaves)):
         leaf = program.leaves[k]
         yield primitive_kind(leaf).surface_margin(leaf, p, False), k
