@@ -149,17 +149,13 @@ clean:
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
 	@touch $@
 
-# Each is a set of tools, by the extra of that name.
+# Each is a set of tools, by the extra of that name. They come without the project, which would be built once more.
 .venv/.packager: EXTRA = wheel
-.venv/.coverage: EXTRA = check,coverage
-.venv/.packager .venv/.coverage: .venv/.installed
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[$(EXTRA)]'
-	@touch $@
-
-.venv/.fuzzer: .venv/.installed
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fuzz]'
-	@touch $@
-
-.venv/.checkers: .venv/.installed
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[check]'
+.venv/.coverage: EXTRA = coverage
+.venv/.fuzzer: EXTRA = fuzz
+.venv/.checkers: EXTRA = check
+.venv/.coverage: .venv/.checkers
+.venv/.packager .venv/.coverage .venv/.fuzzer .venv/.checkers: .venv/.installed
+	$(BIN)/python packaging/requirements.py $(EXTRA) >$@.txt
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r $@.txt
 	@touch $@
