@@ -37,7 +37,7 @@ def disagreeing(one, other) -> int:
 
 
 @cache
-def truth_of(name, settings, glass=False):
+def truth_of(name, settings, glass):
     """The scene with a kind of quadric, without rounding."""
     return exact_picture(parse_scene(scene_with(SURFACES[name], glass)), settings)
 
@@ -51,7 +51,7 @@ def shallow(settings: Settings) -> Settings:
 @every_kind
 def test_povray_draws_what_is_true(name):
     scene = parse_scene(scene_with(SURFACES[name]))
-    truth = truth_of(name, SMALL)
+    truth = truth_of(name, SMALL, False)
     assert len(np.unique(truth.reshape(-1, 3), axis=0)) > 50
     assert disagreeing(PovrayRenderer().render(scene, SMALL).pixels, truth) <= 1
 
