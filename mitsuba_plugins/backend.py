@@ -215,6 +215,13 @@ def _mind_ptxas() -> None:
     drjit.set_flag(drjit.JitFlag.SpillToSharedMemory, False)
 
 
+def on_gpu() -> bool:
+    """Whether the variant that is set runs on a GPU."""
+    import mitsuba
+
+    return bool(mitsuba.variant() == "cuda_ad_rgb")
+
+
 @functools.cache
 def has_cuda() -> bool:
     """Whether the CUDA driver is installed and reports a device, asked without loading Dr.Jit."""

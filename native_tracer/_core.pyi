@@ -98,6 +98,9 @@ class Scene:
     def move_object(self, index: int, displacement: _Triple) -> None:
         """Let an object, its pigment too, move by a displacement while the picture is taken."""
 
+    def box_of(self, index: int) -> tuple[_Triple, _Triple] | None:
+        """The low and the high corner of the box around an object, or None if it is not known to have bounds."""
+
 class Image:
     """A picture to be drawn into: linear RGB, row 0 on top, black at first."""
 

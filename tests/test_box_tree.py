@@ -135,3 +135,37 @@ def test_roundings_make_no_ray_miss_a_box(mi, scale, away):
     limit = np.array([0.0 if near is None else np.nextafter(float(near[0]), np.inf) for near in first])
     for found, near in zip(candidates(tree, o, d, limit), first, strict=True):
         assert near is None or near[1] in found
+
+
+def test_large_boxes_in_a_tree_are_left_out():
+    """Two near one another beside a third keep the box around them, and two apart do not; the rest stays in order."""
+    from mitsuba_plugins.intersection.box_tree import without_large_nodes
+    from native_tracer.bvh import NO_ITEM, threaded_bvh
+
+    random = np.random.default_rng(3)
+    low = random.uniform(-1, 1, (300, 3))
+    high = low + random.uniform(0, 0.5, (300, 3))
+    tree = threaded_bvh(low, high)
+    found = without_large_nodes(tree)
+    assert 300 < found.size < 0.95 * tree.size
+    for octant in range(8):
+        block, whole = (slice(octant * size, (octant + 1) * size) for size in (found.size, tree.size))
+        item, skip, boxes = found.item[block], found.skip[block].astype(int), found.boxes[block]
+        every = tree.item[whole]
+        assert (item[item != NO_ITEM] == every[every != NO_ITEM]).all()
+        assert (boxes[0] == tree.boxes[whole][0]).all()
+        ends = []
+        for i in range(found.size):
+            while ends and ends[-1] == i:
+                ends.pop()
+            assert i < skip[i] <= (ends[-1] if ends else found.size)
+            held = item[i : skip[i]]
+            held = held[held != NO_ITEM]
+            assert (boxes[i] == [*low[held].min(axis=0), *high[held].max(axis=0)]).all()
+            if item[i] == NO_ITEM:
+                ends.append(skip[i])
+    near, beside, apart = ((0, 0, 0), (1, 1, 1)), ((1, 0, 0), (2, 1, 1)), ((40, 0, 0), (41, 1, 1))
+    assert without_large_nodes(threaded_bvh(*np.swapaxes([near, beside, apart], 0, 1))).size == 5
+    high_up = ((0, 0, 0), (30, 30, 30)), ((29, 29, 29), (40, 40, 40)), ((1, 1, 1), (40, 40, 39))
+    assert without_large_nodes(threaded_bvh(*np.swapaxes(high_up, 0, 1))).size == 4
+    assert without_large_nodes(threaded_bvh(np.empty((0, 3)), np.empty((0, 3)))).size == 0

@@ -161,6 +161,8 @@ def test_brightest_colour_with_a_light() -> None:
     local = 0.5 + 3.2 / 16 * (0.6 + 0.2)
     bound = cutoff_bound(scene_of((finish, ROOM), lights=(light,)), dark(max_depth=20))
     assert bound.brightest == pytest.approx(local * (1 - 0.5**21) / (1 - 0.5), rel=1e-9)
+    without_end = cutoff_bound(scene_of((finish, ROOM), lights=(light,)), dark(max_depth=1000))
+    assert without_end.brightest == pytest.approx(local / (1 - 0.5), rel=1e-9)
     texture = Texmap(SCENES[0].parent / "rainbow1.ppm", (0, 0, 0, 0), (0, 0, 0, 0))
     textured = scene_of((mirror(0.5, ka=1), ROOM), pigments=(texture,))
     assert cutoff_bound(textured, dark(max_depth=0)).brightest == pytest.approx(0.99, abs=0.005)

@@ -149,3 +149,15 @@ def test_scenes_are_freed(mi, small_scene, intersections):
     for _ in range(3):
         gc.collect()
         assert highest_shape() <= first
+
+
+def test_gpus_take_the_tree(mi, monkeypatch, small_scene):
+    """For few surfaces it is as fast there, and compiled sooner; of none there is no tree."""
+    from mitsuba_plugins.intersection import ways
+
+    surfaces = MitsubaRenderer(VARIANT)._load(small_scene, SETTINGS).integrator().surfaces
+    chosen = {}
+    for gpu in (False, True):
+        monkeypatch.setattr(ways, "on_gpu", lambda gpu=gpu: gpu)
+        chosen[gpu] = [ways.way_for(*asked) for asked in ((surfaces, "auto"), (surfaces, "analytic"), ([], "auto"))]
+    assert chosen == {False: ["analytic"] * 3, True: ["bvh", "analytic", "analytic"]}

@@ -137,3 +137,12 @@ def test_ctrl_c_between_launches_leaves_the_finished_bands(mi, small_scene, monk
     pixels = np.asarray(caught.value.partial.pixels)
     assert pixels[:18].all()
     assert not pixels[18:].any()
+
+
+@pytest.mark.parametrize("branching", [False, True])
+def test_gpus_get_as_many_rays_as_they_trace_at_once(clock, monkeypatch, branching):
+    """A launch of fewer takes a GPU as long; one for all of a large picture leaves nothing to copy together."""
+    from mitsuba_plugins.integrators import pace
+
+    monkeypatch.setattr(pace, "on_gpu", lambda: True)
+    assert pace.Pace(branching, 16).rows(3840) == (2**18 // 3840 if branching else 2184)

@@ -2,6 +2,7 @@
 
 import importlib.util
 import re
+import sys
 from pathlib import Path
 from types import ModuleType
 
@@ -17,6 +18,7 @@ MOST_TEXTURE_BYTES = 60 * 1024
 
 @pytest.fixture(scope="module")
 def script() -> ModuleType:
+    sys.path.insert(0, str(FOLDER))
     spec = importlib.util.spec_from_file_location("generate", FOLDER / "generate.py")
     assert spec and spec.loader
     module = importlib.util.module_from_spec(spec)

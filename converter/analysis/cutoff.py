@@ -124,9 +124,12 @@ def _brightest(local: Floats, weights: Floats, background: Floats, depth: int) -
     share = weights.sum(axis=1, keepdims=True)
     for _ in range(depth + 1):
         followed = np.multiply(share, color, out=np.zeros_like(local), where=share > 0)  # 0 of infinity is 0
-        color = np.max([*(local + followed), background], axis=0)
-        result.append(np.max(color))
-    return np.array(result)
+        with_more = np.max([*(local + followed), background], axis=0)
+        result.append(np.max(with_more))
+        if np.array_equal(with_more, color):  # further bounces are too dark to add anything
+            break
+        color = with_more
+    return np.pad(result, (0, depth + 1 - len(result)), mode="edge")
 
 
 def _local_colors(scene: Scene, needs: SceneNeeds) -> tuple[Floats, str]:

@@ -99,7 +99,10 @@ class MitsubaRenderer:
                     bands = pictures.bands_by_passes(integrator, mitsuba_scene, sensor, sums, progress)
                 for first, color in bands:
                     rows = np.asarray(color).reshape(-1, width, 3)
-                    pixels[first : first + len(rows)] = rows
+                    if len(rows) == height:
+                        pixels = rows  # to copy a large picture takes as long as a GPU draws it
+                    else:
+                        pixels[first : first + len(rows)] = rows
         except KeyboardInterrupt:
             raise Interrupted(rendering()) from None
         except RuntimeError as error:

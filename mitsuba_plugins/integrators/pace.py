@@ -9,8 +9,7 @@ import time
 from collections.abc import Iterator
 from contextlib import contextmanager
 
-import drjit as dr
-import mitsuba as mi
+from mitsuba_plugins.backend import on_gpu
 
 SECONDS = 0.5
 """What a launch should take, or as long as recording it did, if that is more."""
@@ -18,10 +17,10 @@ GROWTH = 8
 """A launch has no more rays than this times the one before, for the top of a picture may be nothing but sky."""
 LEAST = 1 << 16
 """Primary rays of a launch, however long they take. Fewer take hardly less time, ..."""
-LEAST_BRANCHING = 1 << 10
-"""... but where rays branch, for a tree may have 2^16 of them."""
-FIRST = {False: 1 << 19, True: 1 << 22}
-"""Primary rays of the first launch, on a CPU and on a GPU; where rays branch it has the least."""
+LEAST_BRANCHING = {False: 1 << 10, True: 1 << 18}
+"""... but where rays branch, for a tree may have 2^16 of them. On a CPU, and on a GPU, which has so many at once."""
+FIRST = {False: 1 << 19, True: 1 << 23}
+"""Primary rays of the first launch, likewise, a picture of 3840 x 2160; where rays branch it has the least."""
 SHALLOW = 64
 """Bounces. Where every ray may take more, the least and the first launch have fewer rays in proportion."""
 MOST_PIXELS = {False: 1 << 20, True: 1 << 25}
@@ -36,11 +35,10 @@ class Pace:
     """Sizes of bands and launches that follow how fast the picture is drawn."""
 
     def __init__(self, branching: bool, max_depth: int) -> None:
-        on_gpu = dr.backend_v(mi.Float) == dr.JitBackend.CUDA
         share = min(1.0, SHALLOW / max(max_depth, 1))
-        self._least = LEAST_BRANCHING if branching else int(share * LEAST)
-        self._rays = LEAST_BRANCHING if branching else int(share * FIRST[on_gpu])
-        self._most_pixels = MOST_PIXELS[on_gpu]
+        self._least = LEAST_BRANCHING[on_gpu()] if branching else int(share * LEAST)
+        self._rays = self._least if branching else int(share * FIRST[on_gpu()])
+        self._most_pixels = MOST_PIXELS[on_gpu()]
         self._recorded = 0.0
         self._measured = False
 

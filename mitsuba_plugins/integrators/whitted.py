@@ -115,8 +115,8 @@ class Whitted(mi.SamplingIntegrator):
        - ``analytic``: intersect spheres and half-spaces in the kernel, each with code of its own; ``bvh``: through a
          tree of boxes; ``mesh``: let Embree or OptiX find which of the scene's shapes is hit and compute where from
          the exact surface; ``offset``, ``ulp``: believe Embree or OptiX, and start rays off the surface by Mitsuba's
-         own offset or Waechter and Binder's; ``auto``: ``analytic`` for small scenes and few bounded objects, else
-         ``bvh`` (Default: auto)
+         own offset or Waechter and Binder's; ``auto``: ``analytic`` for small scenes and few bounded objects on a CPU,
+         else ``bvh`` (Default: auto)
 
      * - precision
        - |string|
@@ -228,7 +228,7 @@ class Whitted(mi.SamplingIntegrator):
         primitives = Primitives(types, self.surfaces)
         # These, too, are read anew each time: they are what mitsuba.traverse lets a user change.
         lights = Lights(types, scene.emitters())
-        at_lights = LightContacts(types, contacts, lights.positions, lights.radii)
+        at_lights = LightContacts(types, contacts, lights.positions, lights.radii, self._entered())
         on_something = hasattr(sensor, "eye") and not getattr(sensor, "has_lens", False)
         return {
             "types": types,
@@ -241,6 +241,13 @@ class Whitted(mi.SamplingIntegrator):
             "_errors_of_primary_rays": camera_errors(types, sensor),
             "_tracer": tracer_of(self.intersections, types, scene, self.surfaces, primitives, at_lights),
         }
+
+    def _entered(self):
+        """The objects that rays are refracted into."""
+        if not self.refraction:
+            return []
+        glass = {name for name, bsdf in self._bsdfs.by_name.items() if bsdf.kt[0] > 0}
+        return [k for k, surface in enumerate(self.surfaces) if surface.material in glass]
 
     def _fits_single(self):
         """Whether all errors of single precision are bounded; not where anything is sampled, nor of rays that start on

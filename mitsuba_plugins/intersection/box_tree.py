@@ -5,6 +5,7 @@ box is missed. There is one such order for every octant of directions, in which 
 Smits, Efficiency Issues for Ray Tracing, Journal of Graphics Tools 3(2), 1998.
 """
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -19,7 +20,7 @@ from mitsuba_plugins.intersection.geometry import Box
 from mitsuba_plugins.intersection.rays import NOTHING, Ray, Real, largest
 from mitsuba_plugins.intersection.rounding import bounds_all
 from mitsuba_plugins.syntax import syntax
-from native_tracer.bvh import threaded_bvh
+from native_tracer.bvh import NO_ITEM, ThreadedBvh, threaded_bvh
 
 SLACK = 2.0**-20
 """By how much, relatively, a distance to a box may be wrong: some roundings to single precision."""
@@ -27,6 +28,9 @@ MARGIN = 2.0**-20
 """By how much, relative to the tree and the ray's origin, boxes are wider: some roundings, and what ties with a hit."""
 LEAST_SLOPE = 2.0**-60
 """Of a direction: with less, along an axis, products might overflow, and the ray moves by much less than `MARGIN`."""
+
+LARGE_NODE = 2 / 3
+"""Of the surface of the box above: a box of more, inside the tree, costs more tests than it spares."""
 
 
 @dataclass
@@ -44,14 +48,20 @@ class Walk:
 class BoxTree:
     """Single-precision boxes, which are rounded outward: what they let through is exact."""
 
-    def __init__(self, types: Real, boxes: list[Box | None], objects: list[int] | None = None) -> None:
+    def __init__(
+        self, types: Real, boxes: list[Box | None], objects: list[int] | None = None, apart: Sequence[int] = ()
+    ) -> None:
         """Take the boxes of all objects, or of parts of them; None of those that have no bounds. Of parts take the
         objects, too.
+
+        Those that are `apart` are the first nodes, one each: a search may begin behind them.
         """
         self._types = types
         scale = unit_scale(abs(x) for box in boxes if box is not None for corner in box for x in corner)
         self._scale = types.Float(scale)
-        self._nodes, self._node_count = _nodes(boxes, list(range(len(boxes))) if objects is None else objects, scale)
+        self._nodes, self._node_count = _nodes(
+            boxes, list(range(len(boxes))) if objects is None else objects, scale, apart
+        )
         dr.make_opaque(self._node_count, self._scale)
 
     def walk(self, ray: Ray) -> Walk:
@@ -90,14 +100,26 @@ class BoxTree:
             if dr.hint(walk.blur is not None, mode="scalar"):
                 enter -= dr.abs(enter) * walk.blur
                 leave += dr.abs(leave) * walk.blur
-            near, far = dr.max(enter), dr.min(leave)
             # Of an origin beyond all measure these are NaN: then every box counts as met.
-            meets = ~(near > dr.minimum(far, limit)) & ~(far < 0)
+            near = _larger(_larger(enter.x, enter.y), _larger(enter.z, 0))
+            far = _smaller(_smaller(leave.x, leave.y), _smaller(leave.z, limit))
+            meets = ~(near > far)
             link, item = dr.reinterpret_array(mi.UInt32, rest.z), dr.reinterpret_array(mi.UInt32, rest.w)
-            index = dr.select(walking & meets & (link != skipped), item, index)
-            node = dr.select(meets | (item != NOTHING), node + 1, walk.start + link)
-            walking &= (index == NOTHING) & (node < walk.end)
+            is_leaf = item != NOTHING
+            found = walking & meets & is_leaf & (link != skipped)
+            index = dr.select(found, item, index)
+            node = dr.select(meets | is_leaf, node + 1, walk.start + link)
+            walking &= ~found & (node < walk.end)
         return index, node
+
+
+def _larger(a: Any, b: Any) -> Any:
+    """One operation of processors, unlike dr.maximum, whose answer is never NaN if one of the two is not."""
+    return dr.select(a > b, a, b)
+
+
+def _smaller(a: Any, b: Any) -> Any:
+    return dr.select(a < b, a, b)
 
 
 def _octant(d: Any) -> Any:
@@ -105,17 +127,18 @@ def _octant(d: Any) -> Any:
     return sum(dr.select(component < 0, mi.UInt32(1 << axis), 0) for axis, component in enumerate(d))
 
 
-def _nodes(boxes: list[Box | None], objects: list[int], scale: float) -> tuple[Any, Any]:
+def _nodes(boxes: list[Box | None], objects: list[int], scale: float, apart: Sequence[int]) -> tuple[Any, Any]:
     """The nodes of all octants, and the number of an octant's.
 
     A node is two rows of four: the corner of its box, times the scale, that rays of the octant reach first, the one
     they reach last, the link, and NOTHING. A leaf, which the next node follows in any case, has its object there, and
-    which of the boxes it is. Unbounded surfaces are leaves before the tree's root, with boxes without bounds.
+    which of the boxes it is. What is apart, and then what has no bounds, are leaves before the tree's root, with boxes
+    without bounds.
     """
-    bounded = [i for i, box in enumerate(boxes) if box is not None]
-    unbounded = [i for i, box in enumerate(boxes) if box is None]
+    bounded = [i for i, box in enumerate(boxes) if box is not None and i not in apart]
+    unbounded = [*apart, *(i for i, box in enumerate(boxes) if box is None and i not in apart)]
     corners = np.array([boxes[i] for i in bounded], dtype=np.float64).reshape(-1, 2, 3) * scale
-    tree = threaded_bvh(corners[:, 0], corners[:, 1])
+    tree = without_large_nodes(threaded_bvh(corners[:, 0], corners[:, 1]))
     first, count = len(unbounded), len(unbounded) + tree.size
     low = np.full((8, count, 3), -np.inf, dtype=np.float32)
     high = np.full((8, count, 3), np.inf, dtype=np.float32)
@@ -136,3 +159,22 @@ def _nodes(boxes: list[Box | None], objects: list[int], scale: float) -> tuple[A
     leaf = words[..., 7] != NOTHING
     words[leaf, 6] = np.array(objects, dtype=np.uint32)[words[leaf, 7]]
     return column(mi.Float, nodes), mi.UInt32(count)
+
+
+def without_large_nodes(tree: ThreadedBvh) -> ThreadedBvh:
+    """A tree without the nodes whose boxes spare too few rays the tests of what is below them, which is met from the
+    node above. Of n boxes that rays reach, one around them is worth its test if fewer than n - 1 of n rays meet it.
+    """
+    size = tree.size
+    edges = tree.boxes[:, 3:] - tree.boxes[:, :3]
+    area = edges[:, 0] * edges[:, 1] + edges[:, 1] * edges[:, 2] + edges[:, 2] * edges[:, 0]
+    above = np.flatnonzero(tree.item == NO_ITEM)
+    first = above + 1
+    second = above // max(size, 1) * size + tree.skip[first]
+    kept = np.ones(len(area), dtype=np.bool_)
+    for child in (first, second):
+        kept[child] = (tree.item[child] != NO_ITEM) | (area[child] <= LARGE_NODE * area[above])
+    number = np.zeros((8, size + 1), dtype=np.uint32)
+    number[:, 1:] = np.cumsum(kept.reshape(8, size), axis=1)
+    skip = np.take_along_axis(number, tree.skip.reshape(8, size).astype(np.intp), axis=1).ravel()
+    return ThreadedBvh(tree.boxes[kept], skip[kept], tree.item[kept])

@@ -19,6 +19,7 @@ from mitsuba_plugins.intersection.geometry import Surface
 from mitsuba_plugins.intersection.passages import Crossing
 from mitsuba_plugins.intersection.rays import INVERTED, UPRIGHT, Ray, Real
 from mitsuba_plugins.intersection.shapes.kind import Row, ShapeKind, Vector
+from mitsuba_plugins.intersection.solids import Single
 from mitsuba_plugins.syntax import syntax
 
 if TYPE_CHECKING:
@@ -28,6 +29,9 @@ Numbers = NDArray[np.float64]
 
 INNER_ROOM = 2.0**-16
 """Relative to its radius, how far away from a ball's surface lights are of which that is known without tests."""
+
+LEAST_SLOPE = 2.0**-10
+"""Of a ray to a light, relative to a plane that it crosses."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -71,6 +75,24 @@ class Contacts:
         ]
         return sorted(found, key=lambda contact: contact.primitive)
 
+    def distances_outside(self, points: Numbers, sizes: Numbers, entered: "Sequence[int]", error: float) -> Numbers:
+        """How far each of some points (n, 3), or balls of these sizes (n,), surely lies beyond a plane of each object
+        (n, m): 0 where it may lie beyond none. Numbers may be off by `error`, relatively.
+
+        Of polyhedra that stand still, have several planes, for to test one is as fast as to ask, and are among those
+        that are `entered`: only within them does anybody ask.
+        """
+        result = np.zeros((len(points), len(self._surfaces)))
+        for index in entered:
+            surface = self._surfaces[index]
+            is_polyhedron = isinstance(surface.solid, Single) and surface.solid.kind.FACETED
+            if is_polyhedron and len(surface.rows) > 1 and not surface.moves:
+                rows = np.array(surface.rows)
+                reach = np.abs(points).max(axis=1)[:, None] + np.abs(rows[:, 3])
+                heights = points @ rows[:, :3].T + rows[:, 3] - error * reach
+                result[:, index] = np.maximum(heights.max(axis=1) - sizes, 0)
+        return result
+
     def _keeps(self, index: int, kind: ShapeKind, numbers: "Sequence[float]") -> bool:
         """Whether what lies on an object's primitive, as given, does so at all times."""
         surface = self._surfaces[index]
@@ -109,8 +131,12 @@ class _Place(NamedTuple):
 class LightContacts:
     """The contacts of lights, for kernels, in which nothing of this appears where no light lies on anything."""
 
-    def __init__(self, types: Real, contacts: Contacts, positions: Numbers, radii: Numbers) -> None:
-        """Take the lights' positions (n, 3) and radii (n,); those that are no points lie on nothing."""
+    def __init__(
+        self, types: Real, contacts: Contacts, positions: Numbers, radii: Numbers, entered: "Sequence[int]" = ()
+    ) -> None:
+        """Take the lights' positions (n, 3) and radii (n,), and the objects that rays enter; lights that are no points
+        lie on nothing.
+        """
         self._types = types
         by_light = [contacts.of(at) if radius == 0 else [] for at, radius in zip(positions, radii, strict=True)]
         found = [contact for of_one in by_light for contact in of_one]
@@ -121,12 +147,42 @@ class LightContacts:
         self._end = column(mi.UInt32, np.cumsum([len(of_one) for of_one in by_light], dtype=np.uint32))
         self._primitive = column(mi.UInt32, [contact.primitive for contact in found])
         self._rows = column(types.Float, [x for c in found for x in (*c.normal, c.curvature)] or [0.0] * 4)
+        outside = contacts.distances_outside(positions, radii, entered, 64 * dr.epsilon(types.Float))
+        self._any_outside = bool((outside > 0).any())
+        if self._any_outside:
+            self._outside = column(types.Float, outside)
+            self._object_count = mi.UInt32(outside.shape[1])
+            dr.make_opaque(self._object_count)
 
     def all_within(self, ball: Row) -> bool:
         """Whether all lights lie inside of a ball, away from its surface."""
         *center, radius = ball
         inner = radius * (1 - INNER_ROOM)
         return all(math.dist(center, at) + size < inner for at, size in self._lights)
+
+    def all_beside(self, plane: Row, inside: bool) -> bool:
+        """Whether all lights lie on one side of a plane, its normal of length 1, away from it: where the half-space is
+        or beyond.
+        """
+        *normal, offset = plane
+        heights = [
+            (sum(a * x for a, x in zip(normal, at, strict=True)) + offset, at, size) for at, size in self._lights
+        ]
+        return all(
+            (-height if inside else height) - size > INNER_ROOM * (max(map(abs, at)) + abs(offset))
+            for height, at, size in heights
+        )
+
+    def lies_outside(self, light: Any, index: Any, distance: Any, active: Any) -> Any:
+        """Whether a light at a `distance` lies outside of an object, a polyhedron, so far that all rays to it from
+        within surely cross the object's surface on their way.
+
+        Only where no rounding can matter: some plane is crossed far from the light, and steeply.
+        """
+        if not self._any_outside:
+            return mi.Bool(False)
+        height = dr.gather(self._types.Float, self._outside, light * self._object_count + index, active)
+        return active & (height > LEAST_SLOPE * distance)
 
     @syntax
     def lies_at(self, light: Any, crossing: Crossing, d: Any, active: Any) -> Any:

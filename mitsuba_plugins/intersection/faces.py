@@ -6,6 +6,7 @@ planes few are tested: only those about faces whose boxes rays meet.
 
 from collections.abc import Callable
 from dataclasses import replace
+from functools import lru_cache
 from typing import Any, NamedTuple
 
 import drjit as dr
@@ -20,7 +21,7 @@ from mitsuba_plugins.intersection.rays import NOTHING, Ray, Real
 from mitsuba_plugins.intersection.rounding import decides_ties
 from mitsuba_plugins.intersection.rows import GatheredRows
 from mitsuba_plugins.intersection.shapes import polyhedron
-from native_tracer.halfspaces import polyhedron_faces
+from native_tracer.halfspaces import HalfSpace, polyhedron_faces
 
 MANY = 96
 """Planes from which on a polyhedron is parted into its faces: of fewer, to test all is faster than to walk."""
@@ -119,11 +120,20 @@ def faces_of(index: int, surface: Surface, first: int) -> list[Part]:
     (kind, shape), *others = surface.shapes
     if others or kind is not polyhedron or len(shape.given) < MANY or surface.box is None or surface.moves:
         return []
-    faces = polyhedron_faces(shape.given)
-    parts = []
-    for plane, face in enumerate(faces):
+    faces = _surroundings(tuple(map(tuple, shape.given)))
+    return [Part(index, box, tuple(first + plane for plane in planes)) for box, planes in faces]
+
+
+@lru_cache(maxsize=256)
+def _surroundings(planes: tuple[HalfSpace, ...]) -> list[tuple[Box, tuple[int, ...]]]:
+    """The box of each face of a polyhedron that has neighbours, its plane, and those of the faces around it.
+
+    Kept, for it takes some milliseconds, as long as a GPU draws a picture, and a film has the same polyhedra again.
+    """
+    result = []
+    for plane, face in enumerate(polyhedron_faces(planes)):
         if face.neighbors:
             corners = np.reshape(face.points, (-1, 3))
             box = tuple(corners.min(axis=0)), tuple(corners.max(axis=0))
-            parts.append(Part(index, box, (first + plane, *(first + k for k in face.neighbors))))
-    return parts
+            result.append((box, (plane, *face.neighbors)))
+    return result

@@ -82,14 +82,20 @@ class ExactSurfaces:
         ray = spawn(hit, d, hit.inside, shadow_spread(error, distance))
         if bounds_all(distance):
             ray.shift = hit.error
+        # From within it does not matter where the surface is crossed.
+        leaves = self.contacts.lies_outside(light, hit.object, distance, active & hit.inside)
+        active &= ~leaves
         found, close = self.find_blocker(ray, distance, light, active)
+        close &= active
+        undecided: Any = False
         if bounds_all(distance):
-            return found, active & close & (found == NOTHING)
-        if not self.finds_ties or not decides_ties(distance):
-            return found, False
-        if self.postpones_ties:
-            return found, active & close
-        return self._ties.blocker(ray, distance, light, found, active & close), False
+            undecided = close & (found == NOTHING)
+        elif self.finds_ties and decides_ties(distance):
+            if self.postpones_ties:
+                undecided = close
+            else:
+                found = self._ties.blocker(ray, distance, light, found, close)
+        return dr.select(leaves, hit.object, found), undecided
 
     def find_closest(self, ray: Ray, active: Any) -> tuple[Any, Any, Any, Any]:
         """Distance (infinite for none), object (NOTHING for none) and primitive of the first hit, and whether it was

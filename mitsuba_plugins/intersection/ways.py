@@ -2,6 +2,7 @@
 
 from typing import Any
 
+from mitsuba_plugins.backend import on_gpu
 from mitsuba_plugins.intersection.analytic import AnalyticSurfaces
 from mitsuba_plugins.intersection.bvh import BvhSurfaces
 from mitsuba_plugins.intersection.contacts import LightContacts
@@ -21,9 +22,14 @@ ANALYTIC_OBJECTS = 12
 
 
 def way_for(surfaces: list[Surface], way: str) -> str:
-    """The way that is meant for these surfaces: "auto" is what is fastest, and of nothing there is no tree."""
-    if way == "auto" or (way == "bvh" and not surfaces):
-        return "analytic" if _are_few(surfaces) else "bvh"
+    """The way that is meant for these surfaces: "auto" is what is fastest, and of nothing there is no tree.
+
+    On a GPU the tree is: it is as fast for a few surfaces, and its kernel is compiled in a part of the time.
+    """
+    if not surfaces and way == "bvh":
+        return "analytic"
+    if way == "auto":
+        return "analytic" if not surfaces or (_are_few(surfaces) and not on_gpu()) else "bvh"
     return way
 
 

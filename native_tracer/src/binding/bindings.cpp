@@ -6,6 +6,7 @@
 
 #include <nanobind/ndarray.h>
 #include <nanobind/stl/array.h>
+#include <nanobind/stl/optional.h>
 #include <nanobind/stl/pair.h>
 #include <nanobind/stl/string.h>
 #include <nanobind/stl/vector.h>
@@ -13,12 +14,15 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <cstddef>
+#include <optional>
 #include <stdexcept>
 #include <string>
 #include <type_traits>
 #include <utility>
 #include <variant>
 
+#include "search/bounds.h"
 #include "shapes/simplified_csg.h"
 #include "tracing/description.h"
 
@@ -176,6 +180,14 @@ void move_object(SceneDescription& scene, int index, const Triple& displacement)
         shape);
 }
 
+std::optional<std::pair<Triple, Triple>> box_of(const SceneDescription& scene, int index) {
+    check_index(index, scene.objects.size(), "object");
+    const std::optional<whitted::Bounds> bounds =
+        std::visit([](const auto& shape) { return whitted::bounds_of(shape); },
+                   scene.objects[static_cast<std::size_t>(index)].shape);
+    return bounds ? std::optional(std::pair(bounds->box.low, bounds->box.high)) : std::nullopt;
+}
+
 int add_texmap(SceneDescription& scene, int width, int height, const TexelBuffer& texels, const Quadruple& p0,
                const Quadruple& p1) {
     if (width <= 0 || height <= 0 ||
@@ -293,7 +305,9 @@ void bind_scene(nb::module_& module) {
              "('polyhedron', planes) or ('quadric', coefficients); the program is a Boolean expression in postfix\n"
              "order: k >= 0 pushes leaf k, -1 unites the last two, -2 subtracts, -3 intersects them.")
         .def("move_object", &move_object, "index"_a, "displacement"_a,
-             "Let an object, its pigment too, move by a displacement while the picture is taken.");
+             "Let an object, its pigment too, move by a displacement while the picture is taken.")
+        .def("box_of", &box_of, "index"_a,
+             "The low and the high corner of the box around an object, or None if it is not known to have bounds.");
 }
 
 NB_MODULE(_core, module) {

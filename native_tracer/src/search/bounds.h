@@ -3,6 +3,7 @@
 #pragma once
 
 #include <optional>
+#include <vector>
 
 #include "search/bvh.h"
 #include "tracing/description.h"
@@ -23,6 +24,9 @@ std::optional<Bounds> bounds_of(const PolyhedronDescription& polyhedron);
 std::optional<Bounds> bounds_of(const QuadricDescription& quadric);
 std::optional<Bounds> bounds_of(const CsgDescription& csg);
 std::optional<Bounds> bounds_of(const MovingDescription& moving);  // wherever the body is
+
+// For each leaf of a csg a box outside which it makes no difference whether it is there, if there is one.
+std::vector<std::optional<Bounds>> leaf_bounds_of(const CsgDescription& csg);
 
 // The cost of a ray's test, in tests of spheres. Two planes of a polyhedron cost about as much as one.
 inline double cost_of(const SphereDescription&) { return 1; }

@@ -79,15 +79,12 @@ struct Boxes {
 }  // namespace
 
 void add_leaf_tree(const CsgDescription& csg, int digits, CsgPlan& plan) {
-    constexpr std::size_t fewest = 6;
     Boxes boxes;
     const double epsilon =
         digits < std::numeric_limits<double>::digits ? epsilon_of(Precision::single) : epsilon_of(Precision::normal);
+    const std::vector<std::optional<Bounds>> found = leaf_bounds_of(csg);
     for (std::size_t i = 0; i < csg.leaves.size(); ++i) {
-        const std::optional<Bounds> found =
-            csg.leaves.size() < fewest ? std::nullopt
-                                       : std::visit([](const auto& leaf) { return bounds_of(leaf); }, csg.leaves[i]);
-        if (!boxes.add(static_cast<std::uint32_t>(i), found, epsilon)) {
+        if (!boxes.add(static_cast<std::uint32_t>(i), found[i], epsilon)) {
             plan.apart.push_back(static_cast<int>(i));
         }
     }

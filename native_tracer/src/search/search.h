@@ -21,7 +21,7 @@ struct SearchPlan {
     double reach = 0;  // no coordinate in the tree is larger, nor any plane that bounds its objects farther away
 };
 
-// Adds a tree over the boxes of a csg's leaves to its plan, where they are many; for numbers with so many digits.
+// Adds a tree over the boxes to its plan in which a csg's leaves matter; for numbers with so many digits.
 struct CsgPlan;
 void add_leaf_tree(const CsgDescription& csg, int digits, CsgPlan& plan);
 

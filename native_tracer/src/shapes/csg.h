@@ -61,7 +61,7 @@ class Csg {
             leaves_.push_back(
                 {lists_.add(csg.leaves[i], object, first_primitive + first), first, plan_.first_piece[i + 1]});
         }
-        find_ball(csg);
+        find_box(csg);
         for (const BvhNode& node : plan_.tree.nodes) {
             nodes_.push_back({space_.box(node.box), static_cast<int>(node.children), static_cast<int>(node.first),
                               static_cast<int>(node.first + node.count)});
@@ -74,6 +74,14 @@ class Csg {
     [[gnu::noinline]] Real error_at(int primitive, Real reach, const Vector<Real>& point) const {
         return lists_.visit(leaf_of(primitive).shape,
                             [&](const auto& leaf) { return leaf.error_at(unturned(primitive), reach, point); });
+    }
+
+    // How far a point surely lies outside the box around the body; not positive where it may lie inside.
+    Real distance_outside(const Vector<Real>& point) const {
+        const Vector<Real> below = low_ - point;
+        const Vector<Real> above = point - high_;
+        const Real error = 32 * std::numeric_limits<Real>::epsilon() * (length(point) + length(ball_center_));
+        return std::max({below.x, below.y, below.z, above.x, above.y, above.z}) - error;
     }
 
     template <bool which_primitive>
@@ -174,13 +182,16 @@ class Csg {
 
     // ---- Boxes ------------------------------------------------------------------------------------------------------
 
-    void find_ball(const CsgDescription& csg) {
-        reach2_ = std::numeric_limits<Real>::infinity();
+    void find_box(const CsgDescription& csg) {
+        constexpr Real infinity = std::numeric_limits<Real>::infinity();
+        low_ = {-infinity, -infinity, -infinity};
+        high_ = {infinity, infinity, infinity};
+        reach2_ = infinity;
         if (const std::optional<Bounds> bounds = bounds_of(csg)) {
-            const Vector<Real> low = vector_of<Real>(bounds->box.low);
-            const Vector<Real> high = vector_of<Real>(bounds->box.high);
-            ball_center_ = Real(0.5) * low + Real(0.5) * high;
-            const Vector<Real> arm = high - ball_center_;
+            low_ = vector_of<Real>(bounds->box.low);
+            high_ = vector_of<Real>(bounds->box.high);
+            ball_center_ = Real(0.5) * low_ + Real(0.5) * high_;
+            const Vector<Real> arm = high_ - ball_center_;
             const Real blur = 1024 * std::numeric_limits<Real>::epsilon() * static_cast<Real>(bounds->growth);
             const Real size = length(arm) + blur * (length(arm) + length(ball_center_));
             reach2_ = size * size;
@@ -550,6 +561,7 @@ class Csg {
     Leaves lists_;
     std::vector<Leaf> leaves_;
     std::vector<Node> nodes_;  // the plan's tree
+    Vector<Real> low_, high_;  // the corners of a box that holds all, or infinite
     Vector<Real> ball_center_{0, 0, 0};
     Real reach2_;  // the square of the radius of a ball about that centre which holds all, or infinite
     int pieces_, object_, first_primitive_;

@@ -32,7 +32,7 @@ struct CsgPlan {
     std::vector<int> first_piece;     // of each leaf, and their number
     std::vector<int> leaf_of_piece;   // pieces are the leaves' primitives, in order
     std::vector<Side> sides;          // of the pieces
-    // A tree over the boxes of leaves, where there are many, and the leaves outside it; see BoxTest.
+    // A tree over the boxes in which leaves matter, and the leaves outside it; see BoxTest.
     Bvh tree;
     std::vector<int> apart;
     double growth = 1, reach = 0;

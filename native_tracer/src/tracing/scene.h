@@ -9,7 +9,6 @@
 #include <cstddef>
 #include <cstdint>
 #include <numbers>
-#include <type_traits>
 #include <vector>
 
 #include "search/search.h"
@@ -34,12 +33,13 @@ struct Light {
     Real error;    // how far the position's sums with others may be off
     View<Real> view;
     std::vector<Contact<Real>> contacts;  // of a light that is a point
-    std::vector<Real> outside{};          // of each object that is a polyhedron: how far the light surely lies outside
+    std::vector<Real> outside{};          // of each polyhedron or csg: how far the light surely lies outside
 
     bool is_point() const { return radius == 0; }
 
-    // Whether rays that lead to the light start within a polyhedron that it lies outside of: they cross its surface,
-    // wherever that may be. Only where no rounding can matter: some plane is crossed far from the light, and steeply.
+    // Whether rays that lead to the light start within a polyhedron or a csg that it lies outside of: they cross its
+    // surface, wherever that may be. Only where no rounding can matter: some plane, of the body or of the box around
+    // it, is crossed far from the light, and steeply.
     Mask<Real> is_outside_of_own(const Rays<Real>& rays, L distance) const {
         const L height = L::gather([&](int lane) {
             return rays.inside[lane] ? outside[static_cast<std::size_t>(rays.object[lane])] : Real(0);
@@ -543,7 +543,7 @@ void Scene<Real>::add_light(const SceneDescription& description, const LightDesc
          point ? contacts_of(description, light.position) : std::vector<Contact<Real>>{}});
     for (const Object<Real>& object : objects) {
         lights.back().outside.push_back(shapes.visit(object.shape, [&](const auto& shape) {
-            if constexpr (std::is_same_v<decltype(shape), const ConvexPolyhedron<Real>&>) {
+            if constexpr (requires { shape.distance_outside(position); }) {
                 return shape.distance_outside(position) - lights.back().radius;
             } else {
                 return Real(0);
