@@ -10,7 +10,7 @@
 # make wheel    build the sdist and, from it, a wheel, and try that in an environment of its own
 # make docs     build the pages of docs/ as a site, with every link checked
 # make sanitize run the tests of the native tracer with what finds bad memory and undefined behaviour
-# make coverage run TESTS, and tell which lines of Python and C++ they do not reach
+# make coverage run TESTS, all by default, and tell which lines of Python and C++ they do not reach
 #
 # Each sets up .venv first, where it is missing or older than what it was made from.
 
@@ -21,7 +21,10 @@ WIDTH ?= 800
 HEIGHT ?= 600
 SECONDS ?= 60
 NATIVE_TESTS := $(wildcard tests/test_native_*.py tests/test_bvh.py tests/test_halfspaces.py tests/test_student.py)
-TESTS ?= $(NATIVE_TESTS) tests/test_library.py tests/test_parser.py tests/test_compare.py
+TESTS ?= tests
+
+# Packages in C++, and their modules.
+TRACERS := native:_core student:_student certified:_certified
 
 BIN := .venv/bin
 SOURCES := pyproject.toml CMakeLists.txt $(wildcard native_tracer/src/*.* native_tracer/src/*/* student_tracer/src/* certified_tracer/src/*)
@@ -101,13 +104,13 @@ sanitize: .venv/.checkers
 	    $(call pytest_with,build/sanitize) $(NATIVE_TESTS)
 
 coverage: .venv/.coverage
-	$(call native_build,build/coverage,Debug,-DWHITTED_COVERAGE=ON)
+	$(call native_build,build/coverage,None,-DCMAKE_CXX_FLAGS='-O1 -g1' -DWHITTED_COVERAGE=ON)
 	$(call native_packages,build/coverage)
 	find build/coverage -name '*.gcda' -delete
-	$(call pytest_with,build/coverage) $(TESTS) \
-	    --cov=whitted --cov=converter --cov-report=term-missing:skip-covered
-	$(BIN)/gcovr --root . --filter native_tracer/src --filter student_tracer/src build/coverage \
-	    --merge-mode-functions=separate --gcov-ignore-parse-errors=all
+	$(call pytest_with,build/coverage) -n logical --dist worksteal $(TESTS) \
+	    $(addprefix --cov=,whitted converter mitsuba_plugins) --cov-report=term-missing:skip-covered; failed=$$?; \
+	$(BIN)/gcovr --root . --filter '[a-z]*_tracer/src' build/coverage --merge-lines \
+	    --merge-mode-functions=separate --gcov-suspicious-hits-threshold=0; exit $$failed
 
 # The tracers built in a folder, as a kind of build, with an option.
 define native_build
@@ -116,13 +119,14 @@ define native_build
 	$(BIN)/cmake --build $(1)
 endef
 
-# pytest with these, the other packages of this folder, and what is installed, but for its editable packages.
-pytest_with = PYTHONPATH=$(1)/packages:$(CURDIR):$$($(BIN)/python -c 'import sysconfig; print(sysconfig.get_path("platlib"))') \
-    $(BIN)/python -S -P -m pytest -q -p no:cacheprovider
+# pytest, in which these come before what is installed, also in the processes that tests start.
+pytest_with = PYTHONPATH=$(CURDIR)/$(1)/packages:$(CURDIR) PYTHONSAFEPATH=1 $(BIN)/python -m pytest -q -p no:cacheprovider
 
 # Packages of them.
 define native_packages
-	for tracer in native:_core student:_student; do \
+	mkdir -p $(1)/packages
+	cp packaging/sitecustomize.py $(1)/packages
+	for tracer in $(TRACERS); do \
 	    package=$(1)/packages/$${tracer%:*}_tracer; mkdir -p $$package; \
 	    cp $${tracer%:*}_tracer/*.py* $$package; \
 	    cp $(1)/$${tracer#*:}*.so $$package; done
@@ -149,17 +153,13 @@ clean:
 	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[test]'
 	@touch $@
 
-# Each is a set of tools, by the extra of that name.
+# Each is a set of tools, by the extra of that name. They come without the project, which would be built once more.
 .venv/.packager: EXTRA = wheel
-.venv/.coverage: EXTRA = check,coverage
-.venv/.packager .venv/.coverage: .venv/.installed
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[$(EXTRA)]'
-	@touch $@
-
-.venv/.fuzzer: .venv/.installed
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[fuzz]'
-	@touch $@
-
-.venv/.checkers: .venv/.installed
-	$(BIN)/python -m pip install --quiet --disable-pip-version-check --editable '.[check]'
+.venv/.coverage: EXTRA = coverage
+.venv/.fuzzer: EXTRA = fuzz
+.venv/.checkers: EXTRA = check
+.venv/.coverage: .venv/.checkers
+.venv/.packager .venv/.coverage .venv/.fuzzer .venv/.checkers: .venv/.installed
+	$(BIN)/python packaging/requirements.py $(EXTRA) >$@.txt
+	$(BIN)/python -m pip install --quiet --disable-pip-version-check -r $@.txt
 	@touch $@

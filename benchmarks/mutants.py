@@ -28,10 +28,6 @@ LONGEST = 300
 """Seconds of the tests of one mutant: some make them go on for ever."""
 BUILT = {"native_tracer": "_core", "certified_tracer": "_certified"}
 """The C++ module of each package that mutants are planted into."""
-# Without it Python would find the modules of an editable installation in the project itself.
-SITECUSTOMIZE = """import sys
-sys.meta_path[:] = [finder for finder in sys.meta_path if not type(finder).__module__.startswith("_editable_skbc")]
-"""
 
 
 def copy_project() -> None:
@@ -42,7 +38,8 @@ def copy_project() -> None:
             shutil.copyfile(source, target)
 
     shutil.copytree(ROOT, TREE, ignore=LEFT_OUT, copy_function=copy, dirs_exist_ok=True)
-    (TREE / "sitecustomize.py").write_text(SITECUSTOMIZE, encoding="utf-8")
+    # Without it Python would find the modules of an editable installation in the project itself.
+    shutil.copy(TREE / "packaging" / "sitecustomize.py", TREE)
 
 
 def build() -> bool:

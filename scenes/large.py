@@ -13,21 +13,20 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 
-from generate import (
+from making.gallery import flake
+from making.text import SceneText
+from making.textures import Stops, ramp
+from making.vectors import (
     CUBE,
     GOLDEN,
     OCTAHEDRON,
     TETRAHEDRON,
     Plane,
-    SceneText,
-    Stops,
     Vector,
     around,
     bottom,
     box,
     column,
-    flake,
-    ramp,
     top,
     turned,
     turned_down,

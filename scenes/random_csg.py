@@ -13,7 +13,8 @@ import random
 from collections.abc import Sequence
 from pathlib import Path
 
-from generate import Plane, SceneText, Vector, add, ball, csg, dot, half_spaces, quadric, scale, unit
+from making.text import SceneText, ball, csg, half_spaces, quadric
+from making.vectors import Plane, Vector, add, dot, scale, unit
 
 FRAMES: tuple[tuple[Vector, Vector, Vector], ...] = (
     ((1, 0, 0), (0, 1, 0), (0, 0, 1)),

@@ -10,7 +10,8 @@ import argparse
 import random
 from pathlib import Path
 
-from generate import Color, Plane, SceneText, Vector, numbers
+from making.text import SceneText, numbers
+from making.vectors import Color, Plane, Vector
 from round_numbers import SQUARES, TEXTURE
 
 

@@ -14,7 +14,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Literal
 
-from generate import Plane, SceneText, Vector, add, box, numbers, scale
+from making.text import SceneText, numbers
+from making.vectors import Plane, Vector, add, box, scale
 
 TEXTURE = "squares.ppm"
 """The name of the texture of all scenes, in their folder."""

@@ -19,7 +19,7 @@ OUTSIDE = Quadric((-1.0, -1.0, -2.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0))
 """All but an ellipsoid."""
 
 
-FINE = VIEW._replace(pixel=1 / 4000)
+FINE = VIEW._replace(pixel=1 / 2000)
 
 
 def mesh_of(shape, view=VIEW):

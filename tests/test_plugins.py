@@ -389,13 +389,16 @@ def test_power_underflows(mi):
 
 @pytest.mark.parametrize("intersections", ["analytic", "bvh", "mesh", "offset"])
 def test_symbolic_and_evaluated_loops_agree(mi, small_scene, intersections):
-    """Dr.Jit compiles the integrator's loops; run step by step they must draw the same."""
+    """Dr.Jit compiles the integrator's loops; run step by step they must draw the same.
+
+    Each bounce more has kernels of its own there, which take seconds to compile.
+    """
     import drjit as dr
 
     from converter.to_mitsuba.load import load_description
     from converter.to_mitsuba.scene import scene_description
 
-    scene = load_description(scene_description(small_scene, Settings(width=48, height=36), intersections))
+    scene = load_description(scene_description(small_scene, Settings(width=48, height=36, max_depth=2), intersections))
     symbolic = np.asarray(mi.render(scene))
     with (
         dr.scoped_set_flag(dr.JitFlag.SymbolicLoops, False),

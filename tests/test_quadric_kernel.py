@@ -2,6 +2,7 @@
 
 from decimal import Decimal, localcontext
 from fractions import Fraction
+from itertools import product
 from pathlib import Path
 
 import numpy as np
@@ -242,8 +243,13 @@ def test_a_complement_has_the_same_rows_but_for_signs():
         assert [*quadric.turned(tuple(one))] == other
 
 
-@pytest.mark.parametrize("intersections", ["analytic", "bvh"])
-@pytest.mark.parametrize("name", ["figure1", "whitted", "nested", "bubble", "lanterns"])
+FEW_BALLS = ["figure1", "whitted", "nested", "bubble"]
+
+
+@pytest.mark.parametrize(
+    ("name", "intersections"),
+    [*product(FEW_BALLS, ["analytic", "bvh"]), ("lanterns", "bvh")],  # its many take seconds to compile one by one
+)
 def test_balls_are_drawn_alike_as_quadrics(monkeypatch, name, intersections):
     scene, settings = load_scene(SCENES / f"{name}.in"), Settings(width=160, height=120, max_depth=8)
 

@@ -31,7 +31,7 @@ from converter.studies.families.scenes import (
     scene,
     sphere,
 )
-from converter.studies.stability import study_family
+from converter.studies.stability import TRUTH, study_family
 from converter.studies.worker import CERTIFICATE, DrawingFailed
 
 SCENES = Path(__file__).parents[1] / "scenes"
@@ -336,9 +336,20 @@ def test_lines_of_the_file_are_named(tmp_path, capsys):
 
 
 class Here:
-    """Draws in this process."""
+    """Draws in this process; what all methods are compared with only once."""
+
+    def __init__(self):
+        self._truths = {}
 
     def render(self, method, variant, scene, settings, seconds):
+        if method not in (CERTIFICATE, TRUTH):
+            return self._drawn(method, scene, settings)
+        key = (method, scene, settings)
+        if key not in self._truths:
+            self._truths[key] = self._drawn(*key)
+        return self._truths[key]
+
+    def _drawn(self, method, scene, settings):
         try:
             if method == CERTIFICATE:
                 return certify(scene, settings).colors
@@ -348,13 +359,20 @@ class Here:
 
 
 @cache
+def drawn_family(name):
+    """A family whose cases are made once, and what draws them."""
+    return replace(FAMILIES[name], case=cache(FAMILIES[name].case)), Here()
+
+
+@cache
 def outcomes(family, method):
-    return study_family(FAMILIES[family], [METHODS[method]], Here()).outcomes[method]
+    made, here = drawn_family(family)
+    return study_family(made, [METHODS[method]], here).outcomes[method]
 
 
 TIES = [family.name for family in ties.FAMILIES]
 CASES = [
-    (family, method) for method in USUAL.values() for family in FAMILIES if method == "native" or family not in TIES
+    (family, method) for family in FAMILIES for method in USUAL.values() if method == "native" or family not in TIES
 ]
 
 

@@ -8,6 +8,7 @@ import subprocess
 import sys
 import threading
 from dataclasses import replace
+from functools import cache
 from itertools import pairwise
 from pathlib import Path
 from xml.etree import ElementTree
@@ -273,13 +274,19 @@ def test_a_family_makes_sense(made):
     assert len(structures) == 1
 
 
+@cache
+def case_of(name, value):
+    """A family's case with its truth, which several tests compare with."""
+    case = FAMILIES[name].case(value)
+    if case.truth is not None:
+        return case
+    return replace(case, truth=np.asarray(NativeRenderer("long double").render(case.scene, case.settings).pixels))
+
+
 def wrong_share(case, renderer):
     """Share of the pixels that a renderer draws wrong."""
-    truth = case.truth
-    if truth is None:
-        truth = np.asarray(NativeRenderer("long double").render(case.scene, case.settings).pixels)
     drawn = np.asarray(renderer.render(case.scene, case.settings).pixels)
-    return (~(np.abs(drawn - truth) <= LIMIT).all(axis=2)).mean()
+    return (~(np.abs(drawn - case.truth) <= LIMIT).all(axis=2)).mean()
 
 
 @pytest.mark.parametrize("made", FAMILIES.values(), ids=list(FAMILIES))
@@ -289,7 +296,7 @@ def test_the_native_tracer_in_double_holds_for_six_decades_at_least(made):
     for value in made.values:
         decades = 1e-6 * made.values[start] <= value <= 1e6 * made.values[start]
         if (decades or value == 0) and value <= CHAOTIC.get(made.name, value):
-            case = made.case(value)
+            case = case_of(made.name, value)
             assert wrong_share(case, NativeRenderer()) <= case.allowed, f"{made.name} {value:g}"
 
 
@@ -301,16 +308,13 @@ def test_mitsuba_in_double_holds_for_three_decades_at_least(made, intersections)
     for value in made.values:
         decades = 1e-3 * made.values[start] <= value <= 1e3 * made.values[start]
         if (decades or value == 0) and value <= CHAOTIC.get(made.name, value):
-            case = made.case(value)
+            case = case_of(made.name, value)
             assert wrong_share(case, renderer) <= case.allowed, f"{made.name} {value:g}"
 
 
 def sized(case, power):
-    """A case 2^power times as large, which is the same to the last bit, with its truth."""
-    truth = case.truth
-    if truth is None:
-        truth = np.asarray(NativeRenderer("long double").render(case.scene, case.settings).pixels)
-    return replace(case, scene=scaled(case.scene, 2.0**power), truth=truth)
+    """A case 2^power times as large, which is the same to the last bit."""
+    return replace(case, scene=scaled(case.scene, 2.0**power))
 
 
 @pytest.mark.parametrize("made", FAMILIES.values(), ids=list(FAMILIES))
@@ -325,7 +329,7 @@ def test_a_family_holds_at_every_size(mi, made):
         held = [v for v in made.values if made.values[start] / decades <= v <= min(made.values[start] * decades, last)]
         for value in {made.values[start], held[0], held[-1]}:
             for power in powers:
-                case = sized(made.case(value), power)
+                case = sized(case_of(made.name, value), power)
                 assert wrong_share(case, renderer) <= case.allowed, f"{made.name} {value:g} times 2^{power}"
 
 

@@ -1,14 +1,15 @@
 """How near a ray is to meeting something else of a csg: by the crossings of its leaves that change what it is in."""
 
 import math
-from collections.abc import Iterator, Sequence
+from collections.abc import Sequence
+from functools import lru_cache
 from itertools import combinations, pairwise
 from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
 
-from converter.scene.model import Csg
+from converter.scene.model import Csg, Vector
 from converter.shapes.csg_program import Program, program_of
 from converter.shapes.kind import Intersection, tie_margin
 from converter.shapes.primitives import primitive_kind
@@ -45,7 +46,9 @@ def silhouette_margin(shape: Csg, origin: Floats, direction: Floats) -> float:
     for k, leaf in enumerate(program.leaves):
         kind = primitive_kind(leaf)
         found = [at.t for at in kind.intersections(leaf, origin, direction)]
-        if not found or any(_matters(program, k, origin + t * direction) for t in [*found, sum(found) / len(found)]):
+        if not found or any(
+            _matters(program, k, _inside(program, origin + t * direction)) for t in [*found, sum(found) / len(found)]
+        ):
             result = min(result, kind.silhouette_margin(leaf, origin, direction))
     return result
 
@@ -57,7 +60,7 @@ def edge_margin(shape: Csg, origin: Floats, direction: Floats) -> float:
     margins = [
         primitive_kind(program.leaves[k]).edge_margin(program.leaves[k], origin, direction)
         for k, at in crossings
-        if _matters(program, k, origin + at.t * direction)
+        if _matters(program, k, _inside(program, origin + at.t * direction))
     ]
     return min(margins, default=math.inf)
 
@@ -93,7 +96,7 @@ def _coincide(a: Intersection, b: Intersection) -> bool:
 def surface_margin(shape: Csg, p: Floats, on_it: bool) -> float:
     """By the leaves that matter there; if the point lies on the surface, that is the nearest one's."""
     program = program_of(shape)
-    near = sorted(_distances(program, p))
+    near = _nearest(shape, _point(p))
     if not on_it or not near:
         return near[0][0] if near else math.inf
     (_, own), *others = near
@@ -104,7 +107,7 @@ def surface_margin(shape: Csg, p: Floats, on_it: bool) -> float:
 def radius_of_curvature(shape: Csg, p: Floats) -> float:
     """That of the leaf whose surface is nearest; the smallest one where several are."""
     program = program_of(shape)
-    near = sorted(_distances(program, p))
+    near = _nearest(shape, _point(p))
     closest = [k for margin, k in near if margin <= 2 * near[0][0]]
     leaves = [program.leaves[k] for k in closest]
     return min((primitive_kind(leaf).radius_of_curvature(leaf, p) for leaf in leaves), default=math.inf)
@@ -119,20 +122,29 @@ def _crossings(program: Program, origin: Floats, direction: Floats) -> list[_Cro
     ]
 
 
-def _matters(program: Program, leaf: int, p: Floats) -> bool:
-    """Whether it changes anything near a point whether that is inside of a leaf."""
-    inside = _inside(program, p)
+def _matters(program: Program, leaf: int, inside: Sequence[bool]) -> bool:
+    """Whether it changes anything near a point, inside of these leaves, whether it is inside of one of them."""
     return len({program.value([*inside[:leaf], value, *inside[leaf + 1 :]]) for value in (False, True)}) == 2
 
 
 def _inside(program: Program, p: Floats) -> Sequence[bool]:
-    x, y, z = map(float, p)
-    return [primitive_kind(leaf).contains(leaf, (x, y, z)) for leaf in program.leaves]
+    point = _point(p)
+    return [primitive_kind(leaf).contains(leaf, point) for leaf in program.leaves]
 
 
-def _distances(program: Program, p: Floats) -> Iterator[tuple[float, int]]:
-    """Margins of a point to the surfaces of leaves that matter there, or of all if none does."""
-    matter = [k for k in range(len(program.leaves)) if _matters(program, k, p)]
+@lru_cache(maxsize=4096)  # a hit is asked about for each of the rays that leave it
+def _nearest(shape: Csg, point: Vector) -> list[tuple[float, int]]:
+    """Margins of a point to the surfaces of leaves that matter there, or of all if none does, in ascending order."""
+    program, p = program_of(shape), np.array(point)
+    inside = _inside(program, p)
+    matter = [k for k in range(len(program.leaves)) if _matters(program, k, inside)]
+    near = []
     for k in matter or range(len(program.leaves)):
         leaf = program.leaves[k]
-        yield primitive_kind(leaf).surface_margin(leaf, p, False), k
+        near.append((primitive_kind(leaf).surface_margin(leaf, p, False), k))
+    return sorted(near)
+
+
+def _point(p: Floats) -> Vector:
+    x, y, z = map(float, p)
+    return x, y, z

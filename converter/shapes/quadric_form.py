@@ -75,11 +75,13 @@ class Form(NamedTuple):
         return [_dot(row, p) + h for row, h in zip(self.matrix, self.half_slope, strict=True)]
 
 
+@lru_cache(maxsize=4096)
 def decimal_form(shape: Quadric) -> Form:
     """With the decimals that a file has for the numbers."""
     return _form([Fraction(repr(x)) for x in shape.coefficients])
 
 
+@lru_cache(maxsize=4096)
 def binary_form(shape: Quadric) -> Form:
     """With the doubles that renderers compute with."""
     return _form([Fraction(x) for x in shape.coefficients])

@@ -57,7 +57,7 @@ def first_met(node: Node, surfaces: Sequence[Along], numbers: Arithmetic, tangen
         return None
     distances = [group[0][0] for group in groups]
     middles = [(s + t) / 2 for s, t in pairwise([0 * distances[0], *distances])] + [2 * distances[-1]]
-    values = [_contains(node, surfaces, t, numbers) for t in middles]
+    values = (_contains(node, surfaces, t, numbers) for t in middles)
     for group, (before, after) in zip(groups, pairwise(values), strict=True):
         if before != after:
             return Met(*group[0], before, len(group) > 1)
@@ -87,6 +87,6 @@ def _contains(node: Leaf | Node, surfaces: Sequence[Along], t: Number, numbers: 
         return all(numbers.sign((a * t + 2 * b) * t + c) <= 0 for a, b, c in map(surfaces.__getitem__, node.surfaces))
     whole = False
     for operation, operand in node.steps:
-        inside = _contains(operand, surfaces, t, numbers)
-        whole = whole or inside if operation == "+" else whole and inside == (operation == "&")
+        if whole != (operation == "+"):  # else it changes nothing
+            whole = _contains(operand, surfaces, t, numbers) == (operation != "-")
     return whole

@@ -40,10 +40,10 @@ struct Light {
     // Whether rays that lead to the light start within a polyhedron or a csg that it lies outside of: they cross its
     // surface, wherever that may be. Only where no rounding can matter: some plane, of the body or of the box around
     // it, is crossed far from the light, and steeply.
-    Mask<Real> is_outside_of_own(const Rays<Real>& rays, L distance) const {
-        const L height = L::gather([&](int lane) {
-            return rays.inside[lane] ? outside[static_cast<std::size_t>(rays.object[lane])] : Real(0);
-        });
+    Mask<Real> is_outside_of_own(const Rays<Real>& rays, L distance, Mask<Real> wanted) const {
+        const Mask<Real> within = rays.inside & wanted;  // the others may start on nothing
+        const L height = L::gather(
+            [&](int lane) { return within[lane] ? outside[static_cast<std::size_t>(rays.object[lane])] : Real(0); });
         return height > L(Real(0x1p-10)) * distance;
     }
 
@@ -210,7 +210,7 @@ struct Scene {
                           Mask<Real> wanted) const {
         Indices<Real> own = -1;
         if (any(rays.inside & wanted)) {
-            const Mask<Real> leaving = light.is_outside_of_own(rays, distance) & wanted;
+            const Mask<Real> leaving = light.is_outside_of_own(rays, distance, wanted);
             own = select(leaving, rays.object, own);
             wanted &= ~leaving;
             if (!any(wanted)) {
