@@ -45,7 +45,7 @@ def main() -> None:
     print_table("gpu", ["", *heads(), "wrong", "mixed wrong"], map(_of_scene, sorted(SCENES.glob("*.in"))))
     print()
     print("3840 x 2160, and what of the default's time the kernels take")
-    print_table("gpu-large", ["", *heads(), "kernels ms", "wrong", "mixed wrong"], _large())
+    print_table("gpu_large", ["", *heads(), "kernels ms", "wrong", "mixed wrong"], _large())
 
 
 def heads() -> list[str]:

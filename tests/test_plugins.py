@@ -315,6 +315,7 @@ def test_quotients_are_rounded_once(mi):
 
 
 HOST_DIVISIONS = {
+    "intersection/box_tree.py": {"without_large_nodes"},
     "intersection/columns.py": {"column"},
     "intersection/geometry.py": {"surrounding_ball"},
     "intersection/leaf_table.py": {"_sphere_around"},

@@ -127,7 +127,8 @@ def apart_of(surfaces: Sequence[Surface]) -> list[int]:
 
 
 def _area(box: Any) -> float:
-    x, y, z = (box[1] - box[0]).tolist()
+    (a, b, c), (d, e, f) = box.tolist()  # Python's numbers overflow without a warning
+    x, y, z = d - a, e - b, f - c
     return x * y + y * z + z * x
 
 

@@ -166,8 +166,9 @@ def without_large_nodes(tree: ThreadedBvh) -> ThreadedBvh:
     node above. Of n boxes that rays reach, one around them is worth its test if fewer than n - 1 of n rays meet it.
     """
     size = tree.size
-    edges = tree.boxes[:, 3:] - tree.boxes[:, :3]
-    area = edges[:, 0] * edges[:, 1] + edges[:, 1] * edges[:, 2] + edges[:, 2] * edges[:, 0]
+    with np.errstate(over="ignore", invalid="ignore"):  # of boxes beyond all measure any answer will do
+        edges = tree.boxes[:, 3:] - tree.boxes[:, :3]
+        area = edges[:, 0] * edges[:, 1] + edges[:, 1] * edges[:, 2] + edges[:, 2] * edges[:, 0]
     above = np.flatnonzero(tree.item == NO_ITEM)
     first = above + 1
     second = above // max(size, 1) * size + tree.skip[first]
