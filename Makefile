@@ -11,6 +11,7 @@
 # make docs     build the pages of docs/ as a site, with every link checked
 # make sanitize run the tests of the native tracer with what finds bad memory and undefined behaviour
 # make coverage run TESTS, all by default, and tell which lines of Python and C++ they do not reach
+# make profile  tell where the native tracer's time goes on SCENES, all of the gallery by default, by Linux's perf
 #
 # Each sets up .venv first, where it is missing or older than what it was made from.
 
@@ -30,7 +31,7 @@ BIN := .venv/bin
 SOURCES := pyproject.toml CMakeLists.txt $(wildcard native_tracer/src/*.* native_tracer/src/*/* student_tracer/src/* certified_tracer/src/*)
 CPP := $(wildcard native_tracer/src/*/*.cpp native_tracer/src/*/*.h student_tracer/src/*.cpp student_tracer/src/*.h certified_tracer/src/*.cpp certified_tracer/src/*.h)
 
-.PHONY: render test check figures format films stability mutants fuzz wheel docs sanitize coverage clean
+.PHONY: render test check figures format films stability mutants fuzz wheel docs sanitize coverage profile clean
 .DELETE_ON_ERROR:
 
 # Status 1 of the comparison says that the pictures differ, which is no failure to render.
@@ -111,6 +112,11 @@ coverage: .venv/.coverage
 	    $(addprefix --cov=,whitted converter mitsuba_plugins) --cov-report=term-missing:skip-covered; failed=$$?; \
 	$(BIN)/gcovr --root . --filter '[a-z]*_tracer/src' build/coverage --merge-lines \
 	    --merge-mode-functions=separate --gcov-suspicious-hits-threshold=0; exit $$failed
+
+profile: .venv/.checkers
+	$(call native_build,build/profile,None,-DCMAKE_CXX_FLAGS='-O3 -DNDEBUG -g1')
+	$(call native_packages,build/profile)
+	PYTHONPATH=$(CURDIR)/build/profile/packages:$(CURDIR) $(BIN)/python benchmarks/hotspots.py $(SCENES)
 
 # The tracers built in a folder, as a kind of build, with an option.
 define native_build

@@ -176,7 +176,7 @@ def chart(measured: list[tuple[str, dict[str, Found]]], file: Path) -> None:
         panel.set(title=kind, xlabel="objects")
         panel.grid(True, which="major", alpha=0.3)
     panels[0].set_ylabel("million rays a second")
-    panels[-1].legend(fontsize=8)
+    panels[0].legend(fontsize=8, loc="lower left")
     save_png(figure, file, 110)
 
 
