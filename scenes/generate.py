@@ -12,12 +12,11 @@ from collections.abc import Sequence
 from pathlib import Path
 
 from making.gallery import SCENES
-from making.png import palette_png
 from making.textures import TEXTURES
 
 FOLDER = Path(__file__).resolve().parent
 
-PICTURE = (240, 180)
+PICTURE = (640, 480)
 """Size of a picture in pixels."""
 
 OPTIONS: dict[str, dict[str, str]] = {"bubble": {"ior": "ratio"}}
@@ -33,8 +32,7 @@ def generated() -> dict[str, bytes]:
 
 def draw_pictures(names: Sequence[str]) -> None:
     """Draw scenes into pictures/, each with nine rays a pixel; all of them if none is named."""
-    import numpy as np
-
+    from converter.images.write import write_image
     from converter.renderers.native import NativeRenderer
     from converter.scene.parser import load_scene
     from converter.scene.settings import Settings
@@ -43,8 +41,7 @@ def draw_pictures(names: Sequence[str]) -> None:
     for name in names or sorted(file.stem for file in FOLDER.glob("*.in")):
         settings = Settings(*PICTURE, samples=9, **OPTIONS.get(name, {}))  # type: ignore[arg-type]
         rendering = NativeRenderer().render(load_scene(FOLDER / f"{name}.in"), settings)
-        colors = np.clip(np.asarray(rendering.pixels, dtype=float), 0, 1)
-        (FOLDER / "pictures" / f"{name}.png").write_bytes(palette_png(np.rint(255 * colors)))
+        write_image(FOLDER / "pictures" / f"{name}.png", rendering.pixels, *PICTURE)
 
 
 def main() -> None:
