@@ -3,7 +3,7 @@
     python benchmarks/hotspots.py [NAME...]
 
 Linux's `perf` samples one thread that draws a scene again and again. What is inlined counts for the function that it is
-inlined into: balls for the search. Status 1 without perf, or where the tracer has no symbols.
+inlined into: balls for the search. Status 1 where there is no perf, it may not sample, or the tracer has no symbols.
 """
 
 import re
@@ -60,7 +60,9 @@ def _samples(scene: Path) -> Iterator[tuple[float, str]]:
     with tempfile.TemporaryDirectory() as folder:
         data = str(Path(folder, "perf.data"))
         record = ["perf", "record", "--quiet", "--event", "cpu-clock", "--output", data]
-        subprocess.run([*record, sys.executable, "-P", "-c", DRAW, scene], check=True)
+        sampling = subprocess.run([*record, sys.executable, "-P", "-c", DRAW, scene], stderr=subprocess.PIPE, text=True)
+        if sampling.returncode != 0:
+            sys.exit(f"perf took no samples: {sampling.stderr.strip()}")
         report = ["perf", "report", "--input", data, "--stdio", "--no-children", "--fields", "overhead,symbol"]
         told = subprocess.run(report, check=True, capture_output=True, text=True).stdout
     found = re.findall(r"^ *([\d.]+)% +\[[.k]\] (.*)$", told, re.MULTILINE)

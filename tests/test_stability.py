@@ -214,7 +214,6 @@ def test_a_worker_that_takes_too_long_or_dies_is_replaced():
     assert worker._process is None
 
 
-@pytest.mark.skipif(not hasattr(signal, "SIGSTOP"), reason="processes cannot be stopped here")
 def test_a_worker_may_wait_longer_than_it_may_work_but_not_for_ever(monkeypatch):
     """A stopped process takes no CPU time, as one that has to wait for others."""
     with Worker() as worker:

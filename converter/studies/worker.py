@@ -43,7 +43,6 @@ class Worker:
         """The picture of `scene` by a method, by its name, or by `CERTIFICATE`, within `seconds` of CPU time.
 
         CPU time is that of all threads, and of processes that the method starts: a loaded machine changes it little.
-        Where the system has no timer of it (Windows), a picture is judged when it is there.
 
         Raises:
             DrawingFailed: there is none, for a reason that the method gave, or since its process ended.
@@ -196,9 +195,8 @@ def _end_after(seconds: float) -> None:
     """Let SIGPROF end this process after so much CPU time of its own; 0 is never."""
     import signal
 
-    if hasattr(signal, "setitimer"):
-        signal.signal(signal.SIGPROF, signal.SIG_DFL)
-        signal.setitimer(signal.ITIMER_PROF, seconds)
+    signal.signal(signal.SIGPROF, signal.SIG_DFL)
+    signal.setitimer(signal.ITIMER_PROF, seconds)
 
 
 def _limit_memory() -> None:

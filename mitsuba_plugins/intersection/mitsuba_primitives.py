@@ -41,11 +41,8 @@ class MitsubaPrimitives:
             row: dict[Any, int] = {}
             for k, piece in enumerate(surface.pieces):
                 row.setdefault(piece, k)  # a piece of several rows is known by the first
-            first = primitives.first[index]
-            if surface.triangles:
-                primitive_of.extend(first + row.get(piece, 0) for piece in surface.triangles)
-            else:
-                primitive_of.extend([first + row.get(None, 0)] * shape.primitive_count())
+            pieces = surface.triangles or (None,) * shape.primitive_count()
+            primitive_of.extend(primitives.first[index] + row.get(piece, 0) for piece in pieces)
         self._object = column(mi.UInt32, object_of)
         self._first_triangle = column(mi.UInt32, first_triangle)
         self._primitive = column(mi.UInt32, primitive_of)

@@ -26,10 +26,10 @@ def way_for(surfaces: list[Surface], way: str) -> str:
 
     On a GPU the tree is: it is as fast for a few surfaces, and its kernel is compiled in a part of the time.
     """
-    if not surfaces and way == "bvh":
+    if not surfaces and way in ("auto", "bvh"):
         return "analytic"
     if way == "auto":
-        return "analytic" if not surfaces or (_are_few(surfaces) and not on_gpu()) else "bvh"
+        return "analytic" if _are_few(surfaces) and not on_gpu() else "bvh"
     return way
 
 
