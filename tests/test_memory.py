@@ -19,6 +19,7 @@ PATIENCE = 60.0
 CAMERA = "0 1 -5\n0 0 0\n0 1 0\n40\n"
 LIGHT = "0 0 0 1 1 1 1 0 0\n"
 HEAD = f"{CAMERA}1\n{LIGHT}1\nsolid 1 1 1\n1\n1 0 0 1 0 0 0\n"
+SCENES = Path(__file__).parent.parent / "scenes"
 RAYTRACE, WHITTED = "converter.commands.raytrace", "converter.commands.main"
 
 
@@ -64,6 +65,59 @@ def test_mitsuba_says_that_it_needs_more(tmp_path: Path, many_bodies: Path) -> N
     assert done.returncode == 2
     needs = "Mitsuba needs 1024 MiB of address space, and 600 are allowed (ulimit -v); --method native needs less"
     assert done.stderr == f"whitted render: not enough memory: {needs}\n"
+
+
+THREADS = """
+import resource, sys
+import numpy as np
+from pathlib import Path
+from converter.certify.certificate import certify
+from converter.renderers.native import NativeRenderer
+from converter.scene.parser import load_scene
+from converter.scene.settings import Settings
+from converter.why.student import make_student
+
+scene = load_scene(Path(sys.argv[1]))
+places = np.argwhere(np.ones((160, 120), bool)).astype(np.int32)
+
+def drawn(threads):
+    settings = Settings(160, 120, threads=threads, max_depth=2)
+    if sys.argv[2] == "native":
+        return bytes(NativeRenderer().render(scene, settings).pixels)
+    if sys.argv[2] == "certify":
+        return certify(scene, settings).low.tobytes()
+    return make_student(scene, settings).colors(places, [frozenset()]).tobytes()
+
+def leave(stacks):
+    held = int(Path("/proc/self/statm").read_text().split()[0]) * resource.getpagesize()
+    resource.setrlimit(resource.RLIMIT_AS, (held + int(stacks * (1 << 30)), resource.RLIM_INFINITY))
+
+alone = drawn(1)
+leave(2.5)
+print(drawn(8) == alone)
+leave(0.5)
+try:
+    print(drawn(8) == alone)
+except MemoryError:
+    print("no memory")
+"""
+
+
+@pytest.mark.parametrize(("tracer", "told"), [("native", "no memory"), ("certify", "no memory"), ("student", "True")])
+def test_fewer_threads_draw_where_there_is_no_room_for_more(tracer: str, told: str) -> None:
+    """Their stacks take a gibibyte each. The student's tracer draws with the thread that called it, too."""
+    stack = 1 << 30
+    most = resource.getrlimit(resource.RLIMIT_STACK)[1]
+    if most != resource.RLIM_INFINITY and most < stack:
+        pytest.skip("stacks may not be so large")
+    done = subprocess.run(
+        [sys.executable, "-c", THREADS, SCENES / "whitted.in", tracer],
+        capture_output=True,
+        text=True,
+        timeout=PATIENCE,
+        preexec_fn=lambda: resource.setrlimit(resource.RLIMIT_STACK, (stack, most)),
+    )
+    assert (done.returncode, done.stdout) == (0, f"True\n{told}\n"), done.stderr
 
 
 def test_a_reserve_is_left_where_memory_is_not() -> None:

@@ -7,6 +7,8 @@
 #include <exception>
 #include <memory>
 #include <mutex>
+#include <new>
+#include <system_error>
 #include <thread>
 
 #include "tracer.h"
@@ -126,20 +128,30 @@ void on_threads(int threads, const Work& work, const std::function<void()>& watc
     std::condition_variable ended;
     int running = threads;
     std::vector<std::thread> workers;
+    workers.reserve(static_cast<std::size_t>(threads));
     std::exception_ptr failure;
-    for (int i = 0; i < threads; ++i) {
-        workers.emplace_back([&] {
-            try {
-                work();
-            } catch (...) {
-                const std::lock_guard guard(lock);
-                failure = std::current_exception();
-                stop = true;
-            }
+    const auto run = [&] {
+        try {
+            work();
+        } catch (...) {
             const std::lock_guard guard(lock);
-            --running;
-            ended.notify_one();
-        });
+            failure = std::current_exception();
+            stop = true;
+        }
+        const std::lock_guard guard(lock);
+        --running;
+        ended.notify_one();
+    };
+    try {
+        while (static_cast<int>(workers.size()) < threads) {
+            workers.emplace_back(run);
+        }
+    } catch (const std::system_error&) {  // no room for its stack: fewer will do
+        if (workers.empty()) {
+            throw std::bad_alloc();
+        }
+        const std::lock_guard guard(lock);
+        running -= threads - static_cast<int>(workers.size());
     }
     std::exception_ptr interruption;
     {

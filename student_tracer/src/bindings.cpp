@@ -8,7 +8,10 @@
 
 #include <atomic>
 #include <cstdint>
+#include <exception>
+#include <mutex>
 #include <stdexcept>
+#include <system_error>
 #include <thread>
 #include <vector>
 
@@ -94,21 +97,34 @@ auto trace(const Scene& scene, int width, int height, const Pixels& pixels, cons
         const nb::gil_scoped_release unlocked;
         const std::size_t shares = (count + share - 1) / share;
         std::atomic<std::size_t> next = 0;
+        std::exception_ptr failure;
+        std::once_flag failed;
         const auto work = [&] {
-            for (std::size_t job = next++; job < shares * switches.size(); job = next++) {
-                const std::size_t set = job / shares, first = job % shares * share;
-                const auto tracing = switches[set](On::single_precision) ? trace_some<float> : trace_some<double>;
-                tracing(scene, size, switches[set], pixels.data() + 2 * first, std::min(share, count - first),
-                        colors.data() + 3 * (set * count + first));
+            try {
+                for (std::size_t job = next++; job < shares * switches.size(); job = next++) {
+                    const std::size_t set = job / shares, first = job % shares * share;
+                    const auto tracing = switches[set](On::single_precision) ? trace_some<float> : trace_some<double>;
+                    tracing(scene, size, switches[set], pixels.data() + 2 * first, std::min(share, count - first),
+                            colors.data() + 3 * (set * count + first));
+                }
+            } catch (...) {
+                std::call_once(failed, [&] { failure = std::current_exception(); });
             }
         };
         std::vector<std::thread> others;
-        for (unsigned i = 1; i < threads; ++i) {
-            others.emplace_back(work);
+        try {
+            for (unsigned i = 1; i < threads; ++i) {
+                others.emplace_back(work);
+            }
+        } catch (const std::system_error&) {
+            // No room for its stack: fewer will do.
         }
         work();
         for (std::thread& thread : others) {
             thread.join();
+        }
+        if (failure) {
+            std::rethrow_exception(failure);
         }
     }
     return owned(std::move(colors), {sets.size(), count, 3});
