@@ -8,13 +8,16 @@ from pathlib import Path
 import numpy as np
 import pytest
 from arb_tracer import ArbTracer
-from tie_scenes import TIE_SCENES
+from quadrics import SURFACES, quadric
+from tie_scenes import BLUE, GLOW, MATTE, RED, TIE_SCENES, checker, view, wall
 
 from converter.certify.certificate import certify, levels
 from converter.renderers.methods import METHODS
+from converter.scene.model import Csg, Finish, Operand, Scene, Shape, Sphere, Vector
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
 from converter.studies.families import ties
+from converter.studies.families.scenes import light, scene
 from converter.studies.family import Family
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent / "benchmarks"))
@@ -43,6 +46,55 @@ def test_pixels_with_ties(name: str) -> None:
     assert found.contradictions == []
     assert found.not_judged == 0
     assert found.same >= len(pixels) - 12
+
+
+ON = {
+    "ellipsoid": (1.0, 0.0, 0.0),
+    "hyperboloid of one sheet": (1.0, 0.0, 0.0),
+    "hyperboloid of two sheets": (0.0, 0.0, 1.0),
+    "cone": (1.0, 0.0, 1.0),
+    "elliptic paraboloid": (1.0, 0.0, 1.0),
+    "elliptic cylinder": (1.0, 0.0, 0.5),
+    "hyperbolic cylinder": (1.0, 1.0, 0.5),
+    "parabolic cylinder": (0.5, 0.25, 0.5),
+    "parallel planes": (1.0, 0.25, 0.5),
+    "hyperbolic paraboloid": (1.0, 0.5, 0.5),
+    "half-space": (1.0, 0.25, 0.5),
+}
+"""A point of each quadric."""
+
+
+def of_quadric(name: str, eye: Vector, sign: float, cut: bool) -> Scene:
+    """Clear glass, perhaps with a ball cut out; one light lies on it, another beside it."""
+    numbers = [sign * float(x) for x in SURFACES[name]]
+    body: Shape = quadric(numbers)
+    if cut:
+        body = Csg((Operand("+", body), Operand("-", Sphere((0.0, 0.0, 0.0), 1.25))))
+    glass = Finish(0.1, 0.5, 0.3, 8.0, 0.2, 0.4, 1.0)
+    bodies = [(body, RED, glass), (wall((0.0, 1.0, 0.0), 2.0), checker(0.5), MATTE)]
+    return scene(view(eye, (-0.75, -0.25, -1.0)), bodies, [light(ON[name]), light((0.5, 2.0, 0.25))])
+
+
+@pytest.mark.parametrize("cut", [False, True], ids=["whole", "cut"])
+@pytest.mark.parametrize("name", ON)
+def test_eyes_and_lights_on_quadrics(name: str, cut: bool) -> None:
+    settings, pixels = Settings(4, 3, max_depth=3), [(x, y) for x in range(4) for y in range(3)]
+    for eye in (ON[name], (0.25, 0.5, 3.0)):
+        for sign in (1.0, -1.0):
+            found = compare(of_quadric(name, eye, sign, cut), settings, pixels)
+            assert found.contradictions == []
+            assert found.same == len(pixels)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+def test_the_surface_is_inside_along_its_lines(sign: float) -> None:
+    """The eye is on the wall of a pipe in a ball, and rays run along it."""
+    pipe = quadric([sign * float(x) for x in SURFACES["elliptic cylinder"]])
+    ball = Csg((Operand("+", pipe), Operand("&", Sphere((0.0, 0.0, 0.0), 2.0))))
+    made = scene(view((1.0, 0.0, 0.0)), [(ball, RED, GLOW), (wall((0.0, 0.0, 1.0), 9.0), BLUE, GLOW)])
+    settings = Settings(8, 6, pixel="corner")
+    found = compare(made, settings, [(4, y) for y in range(6)])
+    assert (found.same, found.contradictions) == (6, [])
 
 
 def test_the_oracle_contradicts_bytes_of_another_scene(small_scene) -> None:

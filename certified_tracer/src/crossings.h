@@ -216,7 +216,8 @@ class Bodies {
         Passage<End> result;
         if (own || starts_on(s, ray)) {
             const int first = own && second == 0 ? (ray.inside ? -1 : 1) : judge_.sign(b2, Reason::hit);
-            result.inside = own ? ray.inside : first != 0 ? first < 0 : second < 0;
+            // In the surface itself it is inside: a body is closed.
+            result.inside = own ? ray.inside : first != 0 ? first < 0 : second <= 0;
             if (ends_on(s, ray)) {
                 if (second != 0) {
                     add(result, I(1), index);
@@ -234,7 +235,7 @@ class Bodies {
         if (side == 0) {
             // It starts there by rule.
             const int first = judge_.sign(b2, Reason::hit);
-            result.inside = first != 0 ? first < 0 : second < 0;
+            result.inside = first != 0 ? first < 0 : second <= 0;
             if (second != 0 && first * second < 0) {
                 add(result, -b2 / a, index);
             }
