@@ -1,12 +1,14 @@
 """Objects that move: closed forms, every sample as a scene that stands still, and whatever draws them."""
 
 from dataclasses import replace
+from functools import cache
 from math import sqrt
 from pathlib import Path
 
 import numpy as np
 import pytest
 import sampler_specification as specification
+from tie_scenes import TIE_SCENES
 from variant import VARIANT
 
 from converter.analysis.notices import scene_notices
@@ -31,6 +33,7 @@ from converter.scene.model import (
     Texmap,
 )
 from converter.scene.settings import Settings
+from converter.studies.exact.tracer import ExactTracer
 from converter.to_mitsuba.load import load_description
 from converter.to_mitsuba.scene import scene_description
 from mitsuba_plugins import set_variant
@@ -153,7 +156,7 @@ def stopped(scene, u):
 
 
 def taken_along(pigment, by):
-    if isinstance(pigment, Solid):
+    if isinstance(pigment, Solid) or not any(by):
         return pigment
     p0, p1 = ((*p[:3], float(p[3] - np.dot(p[:3], by))) for p in (pigment.p0, pigment.p1))
     return replace(pigment, p0=p0, p1=p1)
@@ -281,6 +284,76 @@ def test_bytes_do_not_depend_on_the_instruction_set(precision, instructions):
         except ValueError:
             pytest.skip(f"this processor has no {chosen}")
     assert bytes(images[0].pixels) == bytes(images[1].pixels)
+
+
+# ---- Ties of what moves
+
+CLEAR = Finish(0.2, 0, 0, 1, 0, 0.7, 1)
+"""Bends nothing, and adds a little at every surface."""
+HALVES = Csg((Operand("+", box((1, -1, -1), (2, 1, 1))), Operand("+", box((2, -1, -1), (3, 1, 1)))))
+TWINS = {
+    "ball and quadric": (Sphere((-2, 0, 0), 1), Quadric((1, 1, 1, 0, 0, 0, 4, 0, 0, 3))),
+    "box and csg": (box((1, -1, -1), (3, 1, 1)), HALVES),
+}
+
+
+@pytest.mark.parametrize("method", ["native", "native-bvh", "native-long-double", "mitsuba-analytic"])
+@pytest.mark.parametrize("name", TWINS)
+def test_of_bodies_that_move_as_one_only_the_first_is_seen(name, method):
+    """Its distances, and those of the other, are rounded apart."""
+    ground = Object(0, 0, Polyhedron(((0, 1, 0, 1),)))
+    for pair in (TWINS[name], TWINS[name][::-1]):
+        first, second = (Object(k, 0, shape, move=(0.5, 0.25, -1)) for k, shape in enumerate(pair))
+        made = replace(of_matter(), objects=(ground, first, second))
+        alone = drawn(replace(made, objects=(ground, first)))
+        assert disagreeing(drawn(made, FEW, method), alone) == 0
+        assert disagreeing(drawn(replace(made, objects=(ground, second))), alone) > 100
+
+
+def facing(*bodies):
+    """Bodies of glass, each with its displacement, and tiles behind them."""
+    pigments = tuple(map(Solid, ((0.9, 0.2, 0.1), (0.1, 0.8, 0.2), (0.1, 0.2, 0.9))))[: len(bodies)]
+    wall = Object(len(bodies), 0, Polyhedron(((0, 0, 1, 4),)))
+    objects = (*(Object(i, 1, shape, move=move) for i, (shape, move) in enumerate(bodies)), wall)
+    camera = Camera((0.5, 1.25, 6), (0, 0, 0), (0, 1, 0), 40)
+    tiles = Checker((1, 1, 1), (0.1, 0.1, 0.1), 0.5)
+    return Scene(camera, (1, 1, 1), (), (*pigments, tiles), (GLOW, CLEAR), objects)
+
+
+TIED = {
+    "moving as one": facing(
+        (box((-1, -1, -1), (1, 1, 0)), (0.5, 0, 0.25)), (box((0, -1, -2), (2, 1.5, 0)), (0.5, 0, 0.25))
+    ),
+    "sliding apart": facing(
+        (box((0, -1, -2), (2, 1.5, 0)), (-0.5, 0.5, 0)), (box((-1, -1, -1), (1, 1, 0)), (0.5, 0.25, 0))
+    ),
+    "beside one that stands": facing(
+        (box((-1, -1, -1), (1, 1, 0)), (0.5, 0.25, 0)), (box((0, -1, -2), (2, 1.5, 0)), (0, 0, 0))
+    ),
+    "stacked": facing(*((box((x, -1, -1), (x + 1, 1, 1)), (0.5, -0.25, 0.25)) for x in (-1, 0, 1))),
+    "one on the other": facing(
+        (box((-1, -1, -1), (1, 0, 1)), (0.5, 0, 0.25)), (box((-1, 0, -1), (1, 1, 1)), (-0.5, 0, 0))
+    ),
+    "along an edge": all_moving(TIE_SCENES["wedge"][1](), (0, 0.5, 0)),
+}
+
+
+@cache
+def truth(name):
+    """Of one ray a pixel, of the scene stopped at its time."""
+    made, settings = TIED[name], replace(FEW, width=12, height=8, samples=1)
+    pixels = [
+        [ExactTracer(stopped(made, float(time)), settings).pixel(x, y).color for x, time in enumerate(row)]
+        for y, row in enumerate(times(settings)[..., 0])
+    ]
+    return settings, np.array(pixels)
+
+
+@pytest.mark.parametrize("method", ["native", "native-bvh", "native-long-double", "mitsuba-analytic"])
+@pytest.mark.parametrize("name", TIED)
+def test_ties_are_decided_by_the_rules_while_bodies_move(name, method):
+    settings, expected = truth(name)
+    assert disagreeing(drawn(TIED[name], settings, method), expected) == 0
 
 
 def test_no_displacement_is_the_plain_scene_to_the_last_bit():

@@ -294,11 +294,37 @@ def test_a_tree_of_any_depth_needs_no_stack_of_the_system():
         ({"cutoff": math.nan}, "cutoff"),
         ({"max_depth": -1}, "max_depth"),
         ({"precision": "half"}, "precision"),
+        ({"search": "grid"}, "search"),
+        ({"picture": (0, 5)}, "a width and a height"),
+        ({"picture": (64, 48), "first": (1, 0)}, "does not lie in the picture"),
+        ({"picture": (64, 50), "first": (0, 3)}, "does not lie in the picture"),
+        ({"first": (-1, 0)}, "does not lie in the picture"),
+        ({"mask": np.ones((48, 64), np.uint8)}, "a mask goes with sums"),
+        ({"signatures": np.zeros((64, 48), np.uint32)}, "the image's height and width"),
     ],
 )
 def test_settings_that_make_no_sense(options, message):
     with pytest.raises(ValueError, match=message):
         draw(gallery(), **options)
+
+
+@pytest.mark.parametrize(
+    ("size", "passes", "message"),
+    [
+        ((64, 48), [[0, 0]], "each sample once"),
+        ((64, 48), [[0], [4]], "each sample once"),
+        ((64, 48), [[0], []], "a pass has a sample"),
+        ((48, 64), [[0], [1]], "the same size"),
+    ],
+)
+def test_passes_that_make_no_sense(size, passes, message):
+    with pytest.raises(ValueError, match=message):
+        draw(gallery(), samples=4, sums=native_tracer.PassSums(*size), passes=passes)
+
+
+def test_progress_that_is_no_function():
+    with pytest.raises(TypeError, match="callable"):
+        draw(gallery(), progress=1)
 
 
 @pytest.mark.parametrize("size", [(0, 5), (5, -1)])
@@ -325,6 +351,12 @@ def test_the_builder_refuses_what_it_cannot_draw():
         scene.add_polyhedron(pigment, finish, [(0, 0, 0, 1)])
     with pytest.raises(ValueError, match="at least one"):
         scene.add_polyhedron(pigment, finish, [])
+    with pytest.raises(ValueError, match="a plane needs 4 numbers"):
+        scene.add_polyhedron(pigment, finish, np.zeros(5))
+    with pytest.raises(ValueError, match=r"cone must lie in 0\.\.90"):
+        add_finish(scene, cone=91)
+    with pytest.raises(ValueError, match="must not be negative"):
+        scene.add_light(BLACK, WHITE, CONSTANT, -1)
     with pytest.raises(ValueError, match="not finite"):
         scene.add_light((math.nan, 0, 0), WHITE, CONSTANT)
     with pytest.raises(ValueError, match="2 x 2"):

@@ -83,6 +83,15 @@ def test_words_are_numbers_to_both_or_left_to_the_parser(word: str) -> None:
     agree(TINY.format(word).encode())
 
 
+@pytest.mark.parametrize("shape", ["sphere 0 0 0 1", "polyhedron 2 1 0 0 1\n-1 0 0 -3"])
+def test_displacements_are_read_alike(shape: str) -> None:
+    made = TINY.format("7").removesuffix("sphere 0 0 0 1\n") + shape
+    for gap in (" ", "\n", " # a comment\n"):
+        assert agree(f"{made}{gap}move 1 -0{gap}2.5".encode())
+    for moved in ("move 1 2", "move 1 2 3 4", "move 1 nan 3", "move 1 1e999 3", "move 1 2 3 move 1 2 3", "Move 1 2 3"):
+        assert not agree(f"{made} {moved}".encode())
+
+
 @given(st.integers(0, 2**64 - 1), st.integers(1, 40))
 @example(1, 17)
 def test_decimals_of_any_length_are_rounded_alike(bits: int, digits: int) -> None:

@@ -88,6 +88,30 @@ def test_a_pixel_is_the_sum_of_its_rays(odd_scene):
         assert total(traced.rays[0]) == pytest.approx(color, abs=1e-6)
 
 
+@pytest.mark.parametrize("name", ["underwater", "whitted"])
+def test_it_tells_of_rays_what_the_reference_does(name):
+    """Of total reflection in the first, and in the second of rays that are dropped."""
+    scene, settings = load_scene(SCENES[0].with_name(f"{name}.in")), replace(SETTINGS, max_depth=1)
+    student = make_student(scene, settings)
+
+    def family(ray):
+        hit = ray.hit
+        told = None if hit is None else (hit.object, hit.plane, hit.total_reflection)
+        yield ray.kind, told, tuple(sorted(ray.dropped.items()))
+        for child in ray.children:
+            yield from family(child)
+
+    pixels = [(x, y) for x in range(5, 200, 40) for y in range(5, 150, 24)]
+    found = set()
+    for record, (x, y) in zip(NativeRenderer().trace_pixels(scene, settings, pixels), pixels, strict=True):
+        traced = student.trace_pixel(x, y, NOTHING)
+        assert [*family(traced.rays[0])] == [*family(record.rays[0])]
+        assert student.trace_pixel(x, y, {"single_precision"}).color == pytest.approx(traced.color, abs=1e-3)
+        found |= {(told is not None and told[2], dropped) for _, told, dropped in family(traced.rays[0])}
+    dropped = {"underwater": (), "whitted": (("reflected", "depth"), ("transmitted", "depth"))}[name]
+    assert (name == "underwater", dropped) in found
+
+
 def test_threads_change_nothing(odd_scene):
     one = make_student(odd_scene, replace(SETTINGS, threads=1)).colors(places(200, 150), [NOTHING, {"blinn"}])
     four = make_student(odd_scene, replace(SETTINGS, threads=4)).colors(places(200, 150), [NOTHING, {"blinn"}])
@@ -197,5 +221,7 @@ def test_nonsense_is_refused(odd_scene):
         student.trace_pixel(200, 0, NOTHING)
     with pytest.raises(ValueError, match="a width and a height"):
         student_tracer.trace(student._scene, 0, 10, np.zeros((1, 2), np.int32), [[]])
+    with pytest.raises(ValueError, match="a texture needs texels"):
+        student._scene.add_texmap(np.zeros((0, 3, 3), np.float32), (0, 0, 0, 0), (0, 0, 0, 0))
     empty = Scene(odd_scene.camera, (1, 1, 1), (), (), (), ())
     assert make_student(empty, SETTINGS).drawn(places(3, 3), NOTHING).min() == 255
