@@ -15,9 +15,11 @@ import certified_tracer
 from converter.certify.certificate import certify, levels
 from converter.certify.numbers import number
 from converter.commands.main import main
+from converter.images.texture import TextureError
+from converter.images.write import write_image
 from converter.renderers.base import EffectUnavailable
 from converter.renderers.native import NativeRenderer
-from converter.scene.model import Light
+from converter.scene.model import Light, Texmap
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
 from converter.studies.exact.arithmetic import Decimals, Undecided
@@ -152,6 +154,27 @@ def test_what_numbers_of_some_digits_do_not_determine() -> None:
 def test_a_sampled_scene_is_refused() -> None:
     with pytest.raises(EffectUnavailable, match="does not draw"):
         certify(load_scene(next((SCENES / "sampled").glob("*.in"))), Settings(width=4, height=3))
+
+
+def test_colours_that_are_no_levels_are_refused(tmp_path: Path) -> None:
+    file = tmp_path / "a.exr"
+    write_image(file, np.full((2, 2, 3), 0.3001234, np.float32), 2, 2)
+    scene = load_scene(SCENES / "figure1.in")
+    textured = replace(scene, pigments=tuple(Texmap(file, (1, 0, 0, 0), (0, 1, 0, 0)) for _ in scene.pigments))
+    with pytest.raises(TextureError, match=r"a\.exr: its colours are no whole numbers of levels"):
+        certify(textured, Settings(width=4, height=3))
+
+
+@pytest.mark.parametrize("name", ["figure1", "tiles"])
+def test_several_rays_a_pixel(name: str) -> None:
+    """They are those of a finer picture through the centres of its pixels."""
+    scene = load_scene(SCENES / f"{name}.in")
+    several = certify(scene, Settings(width=16, height=12, samples=4, pixel="center"))
+    fine = certify(scene, Settings(width=32, height=24, pixel="center"))
+    mean = fine.colors.reshape(12, 2, 16, 2, 3).mean(axis=(1, 3))
+    known = several.certified & np.isfinite(mean).all(axis=2)
+    assert known.mean() > 0.9
+    assert np.abs(several.colors - mean)[known].max() < 1e-9
 
 
 def test_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

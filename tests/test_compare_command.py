@@ -184,6 +184,13 @@ def test_two_images_refuse_what_is_for_scenes(whitted, draw, option):
         assert err.splitlines()[0] == f"whitted compare: {name} means nothing for two images: nothing is drawn"
 
 
+def test_an_image_is_compared_with_one_other(whitted, draw):
+    for more in ((), ("a.ppm", "a.ppm")):
+        status, _, err = whitted("compare", draw("a.ppm"), *more)
+        assert status == 2
+        assert err.startswith("whitted compare: a.ppm is an image: expected one more, the candidate, found")
+
+
 def test_two_images_take_the_others(whitted, draw):
     options = ("--limit", "1", "--png", "b.png", "--amplify", "2", "--json", "b.json", "-q")
     assert whitted("compare", *options, draw("a.ppm"), "a.ppm")[0] == 0

@@ -116,6 +116,13 @@ def test_meshes_too(mi, textured, tmp_path):
     assert np.array_equal(exported, rendered.pixels)
 
 
+def test_refuses_a_file(small_scene, tmp_path):
+    (tmp_path / "thesis.tex").write_text("years of work")
+    with pytest.raises(ExportError, match=r"thesis\.tex is a file: expected a folder"):
+        export_scene(small_scene, Settings(), tmp_path / "thesis.tex")
+    assert (tmp_path / "thesis.tex").read_text() == "years of work"
+
+
 def test_refuses_a_folder_with_other_files(small_scene, tmp_path):
     (tmp_path / "thesis.tex").write_text("years of work")
     with pytest.raises(ExportError, match="new or empty folder"):

@@ -199,6 +199,12 @@ def test_shapes_are_displaced_as_points_are():
         ),
         ('[tracks."camera.fovy"]\nkey = 1', "s.toml:2: camera.fovy has no 'key' (did you mean 'keys'?)"),
         ('[tracks."camera.fovy"]\nkeys = [[0, 4], [1, 5]]\nloop = true', "s.toml:2: camera.fovy, key 2: a loop ends"),
+        ("tracks = 1", "s.toml: there are no tracks"),
+        ('[tracks]\n"camera.fovy" = 1', "s.toml:2: camera.fovy must be a table, as in [tracks.'camera.fovy']"),
+        ('[tracks."camera.fovy"]\nkeys = []', "s.toml:1: camera.fovy has no keys, as in keys = [[0.0, 1], [2.0, 5]]"),
+        ('[tracks."camera.fovy"]\nkeys = [[0]]', "s.toml:2: camera.fovy, key 1: must be [seconds, value], or have an"),
+        ('[tracks."camera.fovy"]\nkeys = [[-1, 4]]', "s.toml:2: camera.fovy, key 1: its time must be a number of sec"),
+        ('[tracks."camera.fovy"]\nkeys = [[0, 4]]\nloop = 1', "s.toml:1: loop must be true or false, found 1"),
         (
             '[tracks."ball.sphere.radius"]\nkeys = [[0, 1], [1, -1]]',
             "s.toml: frame 12 would be no scene: the radius must be above 0, found '0'\n",
@@ -210,6 +216,19 @@ def test_what_is_wrong_is_told_with_its_line(film, whitted, tmp_path, keys, mess
     status, _, err = whitted("animate", film(keys, text), tmp_path / "f{frame:02}.png", 4, 3, *NATIVE)
     assert status == 2
     assert err.replace(f"{tmp_path}/", "").removeprefix("whitted animate: ").startswith(message)
+
+
+def test_keyframes_are_text(film, whitted, tmp_path):
+    scene = film(KEYS)
+    (tmp_path / "s.toml").write_bytes(b"\xff\xfe")
+    status, _, err = whitted("animate", scene, tmp_path / "f{frame:02}.png", 4, 3, *NATIVE)
+    assert (status, "s.toml: this is no UTF-8 text" in err) == (2, True)
+
+
+def test_frames_have_names_of_their_own(film, whitted, tmp_path):
+    status, _, err = whitted("animate", film(KEYS), tmp_path / "f{frame:.0e}.png", 4, 3, *NATIVE)
+    assert (status, "gives two frames one name" in err) == (2, True)
+    assert not list(tmp_path.glob("*.png"))
 
 
 def test_the_shutter_makes_moves_of_keyframes(film, tmp_path):

@@ -208,6 +208,12 @@ def test_a_program_that_has_changed_is_run_again(scenes, tmp_path):
         (["'open {scene}", "--scenes", "S"], "no closing quotation"),
         (["true {scene} {out}", "--scenes", "/dev"], "there are no scenes (*.in) in it"),
         (["true {scene} {out}", "--scenes", "S", "--jobs", "4000"], "cores"),
+        (["true {scene} {out}", "--scenes", "S", "--cores", "4000"], "--cores: this process has"),
+        (
+            ["true {scene} {out}", "--scenes", "S", "--samples", "4"],
+            "--samples: pictures of one ray a pixel are graded",
+        ),
+        (["true {scene} {out}", "--scenes", "S", "--time", "0"], "must lie between 0.1 and 36000, found 0"),
         (["true {scene} {out}", "--scenes", "S", "--picture", "../a"], "must be a file's name"),
         (["true {scene} {out}", "--scenes", "S", "--rubric", "R"], "R: there is no 'point' in a rubric"),
         (["true {scene} {out}", "--scenes", "S", "--run", "./rt"], "--run: {scene} and {out} must stand in it"),
@@ -436,6 +442,7 @@ def test_a_mistake_has_one_name():
         ("[scenes.a]\nfeature = 3", "scenes.a: feature must be a text"),
         ("[scenes.a]\npoint = 3", "scenes.a: there is no 'point' in a rubric"),
         ("scenes = 3", "scenes must be tables"),
+        ("scenes.a = 3", "scenes.a must be a table"),
         ("[", "rubric.toml: "),
     ],
 )

@@ -104,6 +104,51 @@ def test_many_quietly(whitted, tmp_path):
 
 
 @pytest.mark.parametrize(
+    ("option", "message"),
+    [
+        (("--adaptive-map", "m.png"), "--adaptive-map: it is for one scene, without -o"),
+        (("--stats",), "--stats: it is for one scene, without -o; --json tells it of many"),
+    ],
+)
+def test_many_refuse_what_is_for_one(whitted, tmp_path, option, message):
+    words = ("render", SCENES / "figure1.in", "-o", tmp_path / "{name}.ppm", "--size", "8x6", *NATIVE, *option)
+    status, _, err = whitted(*words)
+    assert (status, err.splitlines()[0]) == (2, f"whitted render: {message}")
+    assert not list(tmp_path.iterdir())
+
+
+def test_what_an_earlier_call_drew_is_kept(whitted, tmp_path):
+    """Not a picture that is another's now, one that has been written over or deleted, or one of other options."""
+    names = ("same", "other", "spoilt", "gone")
+    texture = tmp_path / "steps.ppm"
+    texture.write_bytes(b"P6 1 2 255\n" + bytes(range(6)))
+    text = (SCENES / "figure1.in").read_text().replace("rainbow1.ppm", texture.name)
+    for name in names:
+        (tmp_path / f"{name}.in").write_text(text)
+    (tmp_path / "bad.in").write_text("nonsense")
+    scenes = [tmp_path / f"{name}.in" for name in (*names, "bad")]
+
+    def drawn(*options):
+        """How many are drawn by a call, and not there."""
+        words = ("render", *scenes, "-o", tmp_path / "{name}.ppm", "--size", "8x6", *NATIVE, "--resume", *options)
+        status, out, err = whitted(*words)
+        assert (status, err.count("bad.in:1:1: "), out.count("failed")) == (2, 1, 1)
+        return 4 - out.count("was there")
+
+    assert drawn() == 4
+    first = {name: (tmp_path / f"{name}.ppm").read_bytes() for name in names}
+    (tmp_path / "other.in").write_bytes((SCENES / "highlights.in").read_bytes())
+    (tmp_path / "spoilt.ppm").write_bytes(first["spoilt"][:-1])
+    (tmp_path / "gone.ppm").unlink()
+    assert drawn() == 3
+    assert {name for name in names if (tmp_path / f"{name}.ppm").read_bytes() != first[name]} == {"other"}
+    assert drawn() == 0
+    assert drawn("--specular", "blinn") == drawn("--format", "png") == 4
+    texture.write_bytes(b"P6 1 2 255\n" + bytes(range(1, 7)))
+    assert drawn("--format", "png") == 3  # the other has no texture
+
+
+@pytest.mark.parametrize(
     ("pattern", "message"),
     [
         ("a.ppm", "figure1.in would both become a.ppm: {name} is"),

@@ -250,6 +250,25 @@ def test_attenuated_point_light(mi):
     assert np.allclose(np.asarray(irradiance).ravel(), expected, rtol=1e-6)
 
 
+def test_a_light_with_a_radius_is_a_disc_that_faces_what_it_lights(mi):
+    light = mi.load_dict(
+        {
+            "type": "attenuated_point",
+            "position": [0.0, 3.0, 4.0],
+            "color": {"type": "rgb", "value": [1.0, 1.0, 1.0]},
+            "radius": 2.0,
+        }
+    )
+    u = (np.arange(20) + 0.5) / 20
+    x, y = (mi.Float(a.ravel()) for a in np.meshgrid(u, u))
+    ds, _ = light.sample_direction(interaction(mi, (0, 0, 1)), mi.Point2f(x, y))
+    arms = np.asarray(ds.p).T - (0, 3, 4)
+    assert np.abs(arms @ (0, 3, 4)).max() < 1e-4
+    lengths = np.linalg.norm(arms, axis=1)
+    assert lengths.max() <= 2 + 1e-5
+    assert (lengths**2).mean() == pytest.approx(2, rel=0.02)  # uniform over the area: half of that of the edge
+
+
 # ---- The sensor
 
 
@@ -426,3 +445,68 @@ def test_direct_integrator_draws_the_same_light(mi, small_scene):
     differ = (np.abs(whitted - direct) > 1 / 255).any(axis=-1)
     assert whitted.max() > 0.3
     assert differ.mean() < 0.03, "shadow edges and silhouettes only: Mitsuba's rays are in single precision"
+
+
+def described(scene, **changes):
+    """What Mitsuba loads by itself, for the exact surfaces alone, with changes of the integrator."""
+    from converter.to_mitsuba.scene import scene_description
+
+    made = scene_description(scene, Settings(width=40, height=30, pixel="center"), with_shapes=False)
+    return made | {"integrator": made["integrator"] | changes}
+
+
+def test_the_integrator_traces_rays_of_others(mi, small_scene):
+    """Of an integrator that it is nested in, and of Mitsuba's own camera."""
+    made = described(small_scene)
+    expected = np.asarray(mi.render(mi.load_dict(made, optimize=False)))
+    nested = made | {"integrator": {"type": "aov", "aovs": "t:depth", "image": made["integrator"]}}
+    camera = small_scene.camera
+    view = mi.ScalarTransform4f().look_at(camera.eye, camera.look_at, camera.up)
+    other = {
+        "type": "perspective",
+        "fov": camera.fovy,
+        "fov_axis": "y",
+        "to_world": view,
+        "film": made["sensor"]["film"],
+    }
+    for changed in (nested, made | {"sensor": other}):
+        found = np.asarray(mi.render(mi.load_dict(changed, optimize=False), spp=1))[..., :3]
+        assert (np.abs(found - expected).max(axis=2) > 1 / 255).mean() < 0.01
+
+
+@pytest.mark.parametrize(
+    ("changes", "message"),
+    [
+        ({"filename": "a.json"}, "give either 'geometry' or 'filename'"),
+        ({"geometry": "[]"}, "'geometry' does not describe surfaces"),
+        ({"geometry": '{"a": {"material": "m"}}'}, "'geometry' gives a none of"),
+        ({"geometry": '{"a": {"material": "m", "sphere": [0, 0, 0, 1]}}'}, "names a material 'm', and no BSDF"),
+        (
+            {"geometry": '{"a": {"material": "m", "sphere": [0, 0, 0, 1]}}', "m": {"type": "diffuse"}},
+            "is a 'phong' BSDF",
+        ),
+        ({"intersections": "embree"}, "intersections is one of"),
+        ({"precision": "half"}, "precision is double, float or mixed, not 'half'"),
+        ({"precision": "mixed", "intersections": "mesh"}, "precision mixed is for analytic and bvh, not for 'mesh'"),
+        ({"points": "random"}, "points is stratified or independent, not 'random'"),
+    ],
+)
+def test_an_integrator_that_makes_no_sense_is_refused(mi, small_scene, changes, message):
+    with pytest.raises(Exception, match=f"whitted: .*{message}"):
+        mi.load_dict(described(small_scene, **changes), optimize=False)
+
+
+def test_lights_and_samples_that_the_integrator_does_not_know(mi, small_scene):
+    made = described(small_scene)
+    loaded, lamp = (mi.load_dict(each, optimize=False) for each in (made, made | {"lamp": {"type": "point"}}))
+    with pytest.raises(ValueError, match="every light is an 'attenuated_point', found"):
+        lamp.integrator().render(lamp, spp=1)
+    with pytest.raises(ValueError, match="a grid, and 3 is no square number"):
+        loaded.integrator().render(loaded, spp=3)
+
+
+def test_rows_of_a_texture_have_four_numbers(mi):
+    with pytest.raises(Exception, match="to_s and to_r take 4 numbers each, got '1 2 3'"):
+        mi.load_dict(
+            {"type": "projected_bitmap", "data": mi.TensorXf(np.ones((1, 1, 3))), "to_s": "1 2 3", "to_r": "0 0 0 0"}
+        )
