@@ -85,7 +85,6 @@ void add_steps(const CsgDescription& csg, CsgPlan& plan) {
 
 CsgPlan::CsgPlan() = default;
 CsgPlan::CsgPlan(CsgPlan&& other) noexcept = default;
-CsgPlan& CsgPlan::operator=(CsgPlan&& other) noexcept = default;
 CsgPlan::~CsgPlan() = default;
 
 CsgPlan plan_csg(const CsgDescription& csg, int digits) {

@@ -40,7 +40,6 @@ struct CsgPlan {
     // Not here: kernels must offer no functions to one another, see isa.h.
     CsgPlan();
     CsgPlan(CsgPlan&& other) noexcept;
-    CsgPlan& operator=(CsgPlan&& other) noexcept;
     ~CsgPlan();
 };
 

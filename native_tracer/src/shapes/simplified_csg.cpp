@@ -60,26 +60,20 @@ void order_leaves(CsgDescription& csg) {
 ShapeDescription simplified(const CsgDescription& csg) {
     CsgDescription result;
     std::vector<int> places(csg.leaves.size(), -1);
-    // Puts a part's leaves into the result and writes its program in their numbers.
+    // Puts a polyhedron, or a part of one leaf, into the result, and gives its number there.
     const auto settled = [&](const Part& part) {
-        std::vector<int> program;
+        const auto next = static_cast<int>(result.leaves.size());
         if (part.polyhedron && part.program.size() > 1) {
             result.leaves.push_back(*part.polyhedron);
-            return std::vector<int>{static_cast<int>(result.leaves.size()) - 1};
+            return next;
         }
-        for (const int step : part.program) {
-            if (step < 0) {
-                program.push_back(step);
-                continue;
-            }
-            int& place = places[static_cast<std::size_t>(step)];
-            if (place < 0) {
-                place = static_cast<int>(result.leaves.size());
-                result.leaves.push_back(csg.leaves[static_cast<std::size_t>(step)]);
-            }
-            program.push_back(place);
+        const auto leaf = static_cast<std::size_t>(part.program.front());
+        int& place = places[leaf];
+        if (place < 0) {
+            place = next;
+            result.leaves.push_back(csg.leaves[leaf]);
         }
-        return program;
+        return place;
     };
 
     // Parts that are no polyhedra are settled already: their programs are in the result's numbers.
@@ -89,7 +83,7 @@ ShapeDescription simplified(const CsgDescription& csg) {
             const auto* polyhedron = std::get_if<PolyhedronDescription>(&csg.leaves[static_cast<std::size_t>(step)]);
             Part part{{step}, polyhedron ? std::optional(*polyhedron) : std::nullopt};
             if (!polyhedron) {
-                part.program = settled(part);
+                part.program = {settled(part)};
             }
             stack.push_back(std::move(part));
             continue;
@@ -105,7 +99,7 @@ ShapeDescription simplified(const CsgDescription& csg) {
         }
         for (Part* part : {&left, &right}) {
             if (part->polyhedron) {
-                part->program = settled(*part);
+                part->program = {settled(*part)};
                 part->polyhedron.reset();
             }
         }
