@@ -24,6 +24,7 @@ from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
 from converter.studies.exact.arithmetic import Decimals, Undecided
 from converter.studies.exact.tracer import ExactTracer
+from converter.studies.families.scenes import scaled
 
 SCENES = Path(__file__).parent.parent / "scenes"
 RUNGS = range(len(certified_tracer.digits))
@@ -91,6 +92,35 @@ def test_wide_intervals_hold_all_that_their_numbers_give(seed: int) -> None:
             root = certified_tracer.miss("sqrt", [([abs(x)], 0.0)], ([0.0], 0.0), rung)
             assert Fraction(root[0]) ** 2 <= Fraction(abs(x)) <= Fraction(root[1]) ** 2
         _holds("square", [([x], a)], Fraction(0) if abs(x) <= a else ends[0], ends[1])
+
+
+def test_wide_intervals_of_functions() -> None:
+    with localcontext() as context:
+        context.prec = 160
+        for far in (3, 599, 700):
+            low, high = (Fraction(Decimal(-x).exp()) for x in (far + 2, far - 2))
+            _holds("exp", [([float(-far)], 2.0)], low, high)
+
+
+@pytest.mark.parametrize("rung", RUNGS)
+@pytest.mark.parametrize(
+    ("function", "arguments"),
+    [("/", [([1.0], 0.0), ([0.5], 1.0)]), ("log", [([0.5], 0.49)])],
+    ids=["division by what may be 0", "logarithm of nearly anything"],
+)
+def test_what_intervals_leave_open(function: str, arguments: list[tuple[list[float], float]], rung: int) -> None:
+    with pytest.raises(ValueError, match="undecided"):
+        certified_tracer.miss(function, arguments, ([0.0], 0.0), rung)
+
+
+def test_sizes_beyond_those_of_doubles() -> None:
+    """Squares of small ones are 0 in doubles, and numbers of more digits know them; large ones are left undecided."""
+    scene, settings = load_scene(SCENES / "whitted.in"), Settings(width=16, height=12, max_depth=2)
+    lights = tuple(replace(each, attenuation=(1.0, 0.0, 0.0)) for each in scene.lights)
+    scene = replace(scene, lights=lights)
+    small, large = (scaled(scaled(scene, factor), factor) for factor in (1e-100, 1e100))
+    assert (certify(small, settings).low == certify(scene, settings).low).all()
+    assert certify(large, settings).counts() == {"range": 16 * 12}
 
 
 def _holds(function: str, arguments: list[tuple[list[float], float]], low: Fraction, high: Fraction) -> None:
