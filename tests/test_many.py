@@ -143,9 +143,9 @@ def test_what_an_earlier_call_drew_is_kept(whitted, tmp_path):
     assert drawn() == 3
     assert {name for name in names if (tmp_path / f"{name}.ppm").read_bytes() != first[name]} == {"other"}
     assert drawn() == 0
-    assert drawn("--specular", "blinn") == drawn("--format", "png") == 4
+    assert drawn("--specular", "blinn") == drawn("--specular", "blinn", "--format", "png") == 4
     texture.write_bytes(b"P6 1 2 255\n" + bytes(range(1, 7)))
-    assert drawn("--format", "png") == 3  # the other has no texture
+    assert drawn("--specular", "blinn", "--format", "png") == 3  # the other has no texture
 
 
 @pytest.mark.parametrize(
