@@ -45,29 +45,29 @@ def draw(mi, monkeypatch):
     """Draws scenes in bands of five rows and launches of three samples; `postponing` ties, or deciding at once."""
     import drjit as dr
 
-    from mitsuba_plugins.integrators import pictures
+    from mitsuba_plugins.integrators import launches as drawing
     from mitsuba_plugins.integrators.pace import Pace
 
-    add_samples, launches = pictures._add_samples, []
+    add_samples, launches = drawing._add_samples, []
 
-    def spy(integrator, sensor, color, *rest):
-        result = add_samples(integrator, sensor, color, *rest)
+    def spy(scene, color, *rest):
+        result = add_samples(scene, color, *rest)
         dr.eval(result)
         launches.append((dr.width(result[0]), int(dr.count(result[2] | dr.zeros(mi.Bool, dr.width(color)))[0])))
         return result
 
-    monkeypatch.setattr(pictures, "_add_samples", spy)
+    monkeypatch.setattr(drawing, "_add_samples", spy)
     monkeypatch.setattr(Pace, "rows", lambda self, width: 5)
     monkeypatch.setattr(Pace, "samples", lambda self, pixels: 3)
 
     def drawn(name, postponing):
-        from mitsuba_plugins.integrators.whitted import Whitted
+        from mitsuba_plugins.integrators.kernel_scene import KernelScene
 
         make, settings = SCENES[name]
         launches.clear()
         with monkeypatch.context() as patch:
             if not postponing:
-                patch.setattr(Whitted, "postpone_ties", lambda self, postpones: None)
+                patch.setattr(KernelScene, "postpone_ties", lambda self, postpones: None)
             rendering = MitsubaRenderer(VARIANT).render(make(), settings)
         return Drawn(np.array(rendering.pixels), rendering.statistics["pixels_too_deep"], list(launches))
 
