@@ -11,10 +11,15 @@ from converter.renderers.mitsuba import MitsubaRenderer
 from converter.studies.families.scenes import MATTE, MIRROR, floor, light, scene
 
 
-def floor_before_wall():
+def floor_before_wall(up=(0.0, 1.0, 0.0)):
     """Where they meet, in a line that a row of rays meets, the floor counts: a mirror, so that a ray is dropped."""
     bodies = [(floor(-1.0), RED, replace(MIRROR, kd=0.5)), (wall((0.0, 0.0, 1.0), 3.0), GREEN, MATTE)]
-    return scene(view((0.0, 0.0, 0.0)), bodies, [light((1.0, 2.0, 1.0))])
+    return scene(view((0.0, 0.0, 0.0), up=up), bodies, [light((1.0, 2.0, 1.0))])
+
+
+def floor_aside():
+    """The line goes from row to row, and meets one of the three samples of a launch."""
+    return floor_before_wall(up=(1.0, 0.0, 0.0))
 
 
 def shadows_of_edges():
@@ -26,6 +31,7 @@ def shadows_of_edges():
 SCENES = {
     "floor before wall": (floor_before_wall, replace(SETTINGS, max_depth=0)),
     "nine samples": (floor_before_wall, replace(SETTINGS, max_depth=0, samples=9)),
+    "one of three samples": (floor_aside, replace(SETTINGS, max_depth=0, samples=9)),
     "balls that touch": TIE_SCENES["balls that touch"][1:],
     "shadows of edges": (shadows_of_edges, SETTINGS),
 }
