@@ -1,9 +1,10 @@
 """The computed scenes of the gallery."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
-from making.text import SceneText, ball, csg, half_spaces, number, numbers
+from making.bodies import brilliant_planes, die, flake
+from making.text import SKY, SceneText, number, numbers
 from making.textures import Stops, mix, ramp, sky_at
 from making.vectors import (
     CUBE,
@@ -13,14 +14,11 @@ from making.vectors import (
     OCTAHEDRON,
     TETRAHEDRON,
     Color,
-    Plane,
     Vector,
-    add,
     around,
     bottom,
     box,
     column,
-    dot,
     pyramid,
     scale,
     top,
@@ -28,9 +26,6 @@ from making.vectors import (
     turned_down,
     unit,
 )
-
-SKY = "1 0 0 1 0 0 0"
-"""A finish that shines by itself, and takes neither light nor shadow."""
 
 
 def solids() -> SceneText:
@@ -160,37 +155,6 @@ def endless() -> SceneText:
     s.sphere(gold, shiny, (0, 7.5, 18), 1.85)
     s.sphere(gold, shiny, (1.4, 1.0, -1.5), 0.55)
     return s
-
-
-def brilliant_planes(center: Vector, size: float, pose: Callable[[Vector], Vector]) -> list[Plane]:
-    """A round brilliant of the given girdle radius: table, 8 star, 8 bezel and 16 upper girdle facets, a girdle of 16,
-    16 lower girdle and 8 pavilion main facets. `pose` turns its normals.
-    """
-
-    def facet(azimuth: float, slope: float, through: tuple[float, float]) -> Plane:
-        """A facet whose normal is `slope` degrees from the axis (beyond 90: it looks down), through a point (r, y)."""
-        normal = turned((math.sin(math.radians(slope)), math.cos(math.radians(slope)), 0), 1, azimuth)
-        offset = math.sin(math.radians(slope)) * through[0] + math.cos(math.radians(slope)) * through[1]
-        return (*normal, offset)
-
-    edge = math.cos(math.radians(11.25))  # the girdle has 16 sides, and vertices at radius 1
-    girdle, table_radius = 0.03, 0.56
-    table = girdle + (1 - table_radius) * math.tan(math.radians(34.5))
-    facets = [facet(0, 0, (0, table))]
-    for k in range(8):
-        facets.append(facet(45 * k, 34.5, (1, girdle)))
-        facets.append(facet(45 * k + 22.5, 22, (table_radius * math.cos(math.radians(22.5)), table)))
-        facets.append(facet(45 * k, 180 - 40.8, (1, -girdle)))
-    for k in range(16):
-        azimuth = 22.5 * k + 11.25
-        facets.append(facet(azimuth, 41, (edge, girdle)))
-        facets.append(facet(azimuth, 90, (edge, 0)))
-        facets.append(facet(azimuth, 180 - 42.3, (edge, -girdle)))
-    planes = []
-    for *normal, offset in facets:
-        n = pose((normal[0], normal[1], normal[2]))
-        planes.append((*n, -dot(n, center) - size * offset))
-    return planes
 
 
 def brilliant() -> SceneText:
@@ -431,28 +395,6 @@ def checker() -> SceneText:
     return s
 
 
-def flake(
-    center: Vector, radius: float, up: Vector, generations: int, generation: int = 0
-) -> Iterator[tuple[int, Vector, float]]:
-    """Generation, centre and radius of each ball of a sphereflake: a ball, and on it, about `up`, nine smaller flakes.
-
-    Six stand around its equator, three on its northern half, each a third of its size. So does `balls` of Haines,
-    "A Proposal for Standard Graphics Environments", IEEE Computer Graphics and Applications 7(11), 1987.
-    """
-    yield generation, center, radius
-    if generation + 1 == generations:
-        return
-    tilt = math.degrees(math.acos(up[1]))
-    azimuth = math.degrees(math.atan2(-up[2], up[0]))
-    for count, latitude, start in ((6, 0.0, 0.0), (3, 54.735610, 30.0)):
-        for k in range(count):
-            direction = turned(turned((1, 0, 0), 2, latitude), 1, start + 360 * k / count)
-            # From about the y axis to about `up`.
-            direction = turned(turned(direction, 2, -tilt), 1, azimuth)
-            apart = scale(direction, radius * 4 / 3)
-            yield from flake(add(center, apart), radius / 3, direction, generations, generation + 1)
-
-
 def sphereflake() -> SceneText:
     """Balls on balls."""
     s = SceneText(
@@ -544,31 +486,6 @@ def dice() -> SceneText:
     s.body(red, lacquer, die((1.6, 1, 1.2), -18))
     s.body(clear, glass, die((0.35, 1.001, -2.1), 9))
     return s
-
-
-EYES: dict[int, tuple[tuple[float, float], ...]] = {
-    1: ((0, 0),),
-    2: ((-1, -1), (1, 1)),
-    3: ((-1, -1), (0, 0), (1, 1)),
-    4: ((-1, -1), (-1, 1), (1, -1), (1, 1)),
-    5: ((-1, -1), (-1, 1), (0, 0), (1, -1), (1, 1)),
-    6: ((-1, -1), (-1, 0), (-1, 1), (1, -1), (1, 0), (1, 1)),
-}
-"""Where a die's eyes are on each of its faces."""
-
-
-def die(center: Vector, degrees: float) -> str:
-    """A die, its edges 2 long, turned about the vertical; opposite faces have seven eyes."""
-    x, y, z = (turned(axis, 1, degrees) for axis in ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
-    faces: list[Plane] = []
-    eyes = []
-    for (up, right, ahead), count in zip(((x, y, z), (y, z, x), (z, x, y)), (3, 5, 1), strict=True):
-        for normal, number_of_eyes in ((up, count), (scale(up, -1), 7 - count)):
-            faces.append((*normal, -dot(normal, center) - 1))
-            for p, q in EYES[number_of_eyes]:
-                middle = add(add(scale(normal, 1.06), scale(right, 0.5 * p)), scale(ahead, 0.5 * q))
-                eyes.append(f"- {ball(add(center, middle), 0.21)}")
-    return csg(f"+ {half_spaces(faces)}", f"& {ball(center, 1.46)}", *eyes)
 
 
 SCENES: dict[str, Callable[[], SceneText]] = {
