@@ -126,7 +126,7 @@ define native_build
 endef
 
 # pytest, in which these come before what is installed, also in the processes that tests start.
-pytest_with = PYTHONPATH=$(CURDIR)/$(1)/packages:$(CURDIR) PYTHONSAFEPATH=1 $(BIN)/python -m pytest -q -p no:cacheprovider
+pytest_with = PYTHONPATH=$(CURDIR)/$(1)/packages:$(CURDIR) $(BIN)/python -m pytest -q -p no:cacheprovider
 
 # Packages of them.
 define native_packages

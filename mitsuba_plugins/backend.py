@@ -29,6 +29,12 @@ PLUGINS = (
 MINIMUM_LLVM = 19
 """Dr.Jit 1.5 calls LLVM 14 and older missing, and aborts the process in code generation with 15 and 16."""
 
+HOW_TO_GET_LLVM = (
+    "On x86-64 Linux: pip install karellen-llvm-core. Elsewhere your system's (Debian: apt install "
+    f"llvm-{MINIMUM_LLVM} libatomic1; macOS: brew install llvm)"
+)
+"""libatomic1 is Dr.Jit's own wish on arm64, which minimal systems lack."""
+
 NOT_INSTALLED = "Mitsuba is not installed: pip install mitsuba (there is none for macOS on Intel)"
 
 _FOLDERS = ("/usr/lib", "/usr/lib64", "/usr/local/lib", "/usr/local/opt", "/opt/homebrew/opt", "/opt/local/libexec")
@@ -174,8 +180,7 @@ def set_variant(variant: str = "auto") -> str:
         _prepare_llvm()
     elif not has_cuda():
         raise BackendError("cuda_ad_rgb: no CUDA device answers on this machine; use --variant llvm_ad_rgb")
-    import mitsuba
-
+    mitsuba = _import_mitsuba()
     if variant == "llvm_ad_rgb":
         _check_llvm()
     if mitsuba.variant() != variant:
@@ -185,6 +190,18 @@ def set_variant(variant: str = "auto") -> str:
     _start_worker()
     register()
     return variant
+
+
+def _import_mitsuba() -> ModuleType:
+    """Mitsuba, or why it cannot be loaded: Dr.Jit 1.5 raises a NameError where a library of the system is missing."""
+    try:
+        import mitsuba
+    except Exception as error:
+        cause: BaseException = error
+        while first := cause.__cause__ or cause.__context__:
+            cause = first
+        raise BackendError(f"Mitsuba cannot be loaded: {cause}") from error
+    return mitsuba
 
 
 @functools.cache
@@ -255,8 +272,7 @@ def _prepare_llvm() -> None:
     if library is None:
         raise BackendError(
             f"Mitsuba's llvm_ad_rgb needs an LLVM library of version {MINIMUM_LLVM} or newer, and none was found. "
-            "On x86-64 Linux: pip install karellen-llvm-core. Elsewhere install your system's LLVM "
-            "(Debian: apt install llvm-19; macOS: brew install llvm), or set DRJIT_LIBLLVM_PATH to its library."
+            f"{HOW_TO_GET_LLVM}; or set DRJIT_LIBLLVM_PATH to one."
         )
     if complaint := llvm_complaint():
         raise BackendError(

@@ -13,7 +13,7 @@ import math
 from collections.abc import Callable
 from pathlib import Path
 
-from making.gallery import flake
+from making.bodies import flake
 from making.text import SceneText
 from making.textures import Stops, ramp
 from making.vectors import (

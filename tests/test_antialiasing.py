@@ -4,6 +4,7 @@ import csv
 import json
 import shutil
 from dataclasses import replace
+from itertools import combinations
 
 import numpy as np
 import pytest
@@ -13,7 +14,8 @@ from converter.renderers.methods import METHODS
 from converter.renderers.native import NativeRenderer
 from converter.renderers.povray import PovrayRenderer, Supersampling
 from converter.scene.settings import Settings
-from converter.studies.antialiasing import LIMITS, THRESHOLDS, measure_antialiasing
+from converter.studies.antialiasing import LIMITS, THRESHOLDS, AntialiasingStudy, Curve, Point, measure_antialiasing
+from converter.studies.antialiasing_figure import antialiasing_chart
 from converter.studies.antialiasing_report import ALIGN, HEADER, rows
 
 SMALL = Settings(width=24, height=18)
@@ -70,3 +72,23 @@ def test_the_command(whitted, scene, tmp_path):
     assert "native, in every pixel" in out.read_text()
     assert len(list(csv.DictReader(table.read_text().splitlines()))) == 4 + len(LIMITS)
     assert len(json.loads(data.read_text())["scenes"][0]["ways"]) == 2
+
+
+def test_names_stand_beside_their_curves_and_every_axis_has_numbers(tmp_path):
+    curves = [
+        Curve("whole", "native", [Point("1", 1, 7.0, 0.02), Point("64", 64, 0.7, 0.4)]),
+        Curve("first", "povray", [Point("+A0.3", 3.2, 3.45, 0.09), Point("+A0.01", 7.1, 3.2, 0.13)]),
+        Curve("second", "povray", [Point("+A0.3", 3.7, 3.9, 0.1), Point("+A0.01", 10, 2.6, 0.24)]),
+    ]
+    figure = antialiasing_chart([AntialiasingStudy(tmp_path / "a.in", SMALL, curves, [])])
+    figure.draw_without_rendering()
+    for axes in figure.axes:
+        names = [text.get_window_extent().extents.tolist() for text in axes.texts]
+        assert len(names) == 2 * len(curves)
+        marks = [at for line in axes.lines for at in axes.transData.transform(line.get_xydata()).tolist()]
+        assert not [at for at in marks for a in names if a[0] <= at[0] <= a[2] and a[1] <= at[1] <= a[3]]
+        assert not [
+            (a, b) for a, b in combinations(names, 2) if a[0] < b[2] and b[0] < a[2] and a[1] < b[3] and b[1] < a[3]
+        ]
+        for axis, limits in ((axes.xaxis, axes.get_xlim()), (axes.yaxis, axes.get_ylim())):
+            assert sum(limits[0] <= at <= limits[1] for at in axis.get_majorticklocs()) >= 3

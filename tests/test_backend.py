@@ -189,6 +189,23 @@ def test_without_mitsuba_commands_name_a_method_that_works(tmp_path, monkeypatch
         assert child.stderr.endswith(f"\n--method {instead} draws without Mitsuba\n") == (status == 3)
 
 
+def test_mitsuba_that_cannot_be_loaded_is_told_in_a_sentence(tmp_path, monkeypatch):
+    """As Dr.Jit 1.5 fails on arm64 without libatomic, which minimal systems lack."""
+    mitsuba = tmp_path / "mitsuba" / "__init__.py"
+    mitsuba.parent.mkdir()
+    mitsuba.write_text("try:\n    raise ImportError('libatomic.so.1: no file')\nexcept ImportError:\n    _drjit_ext\n")
+    monkeypatch.setenv("PYTHONPATH", str(tmp_path))
+    scene = Path(__file__).parents[1] / "scenes" / "figure1.in"
+    words = ["render", scene, "a.ppm", "8", "6", "-q", "--variant", "llvm_ad_rgb"]
+    program = [sys.executable, "-m", "converter.commands.main", *words]
+    child = subprocess.run(program, capture_output=True, text=True, cwd=tmp_path)
+    assert child.returncode == 3
+    assert child.stderr.splitlines() == [
+        "whitted render: Mitsuba cannot be loaded: libatomic.so.1: no file",
+        "--method native draws without Mitsuba",
+    ]
+
+
 def test_methods_that_the_users_library_rules_out_are_marked(monkeypatch):
     monkeypatch.setenv("DRJIT_LIBLLVM_PATH", "/nowhere/libLLVM.so")
     monkeypatch.setattr(backend, "has_cuda", lambda: False)

@@ -13,7 +13,8 @@ from converter.renderers.native import NativeRenderer
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
 from converter.studies.exact.arithmetic import Decimals, Fractions, Undecided
-from converter.studies.exact.tracer import TIES, ExactTracer, exact_picture
+from converter.studies.exact.ties import TIES
+from converter.studies.exact.tracer import ExactTracer, exact_picture
 from converter.studies.families.scenes import GLOW, MATTE, WHITE, box, floor, light, scene, sphere
 
 SCENES = Path(__file__).resolve().parent.parent / "scenes"

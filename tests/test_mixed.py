@@ -94,44 +94,47 @@ def test_rays_stay_within_their_bounds(mi, name, tmp_path):
     import drjit as dr
 
     from mitsuba_plugins import sampler as samples
-    from mitsuba_plugins.integrators.pictures import _corners
+    from mitsuba_plugins.integrators.pixels import corners
+    from mitsuba_plugins.integrators.primary_rays import primary_ray
+    from mitsuba_plugins.integrators.secondary_rays import reflected, transmitted
 
     settings = Settings(width=96, height=72)
     file = SCENES / f"{name}.in"
     drawn = parse_scene(MADE[name], tmp_path / "made.in") if name in MADE else load_scene(file)
-    scene = MitsubaRenderer(VARIANT, precision="mixed")._load(drawn, settings)
-    integrator, sensor = scene.integrator(), scene.sensors()[0]
+    loaded = MitsubaRenderer(VARIANT, precision="mixed")._load(drawn, settings)
+    sensor = loaded.sensors()[0]
     count = settings.width * settings.height
     random = np.random.default_rng(5)
-    with integrator.prepared(scene, sensor), dr.suspend_grad():
+    precisions = loaded.integrator().prepared(loaded, sensor)
+    double, single = precisions.deciding, precisions.single
+    with dr.suspend_grad():
         sample = samples.Sample(mi.UInt32(0), mi.UInt32(0))
-        position = _corners(sensor.film(), dr.arange(mi.UInt32, count)) + mi.Point2d(0.5, 0.5)
-        single = integrator.precisions.single
-        exact = integrator.primary_ray(sensor, position, sample)
+        position = corners(sensor.film(), dr.arange(mi.UInt32, count)) + mi.Point2d(0.5, 0.5)
+        exact = primary_ray(double, position, sample)
         turned = np.asarray(exact.d).T + OFF * across(np.asarray(exact.d).T, random)
         turned /= np.linalg.norm(turned, axis=1)[:, None]
         moved = np.asarray(exact.o).T + OFF * across(turned, random)
-        with single():
-            ray = integrator.primary_ray(sensor, position, sample)
+        with single() as scene:
+            ray = primary_ray(scene, position, sample)
             ray = replace(ray, t_min=ray.t_min + OFF, shift=ray.shift + OFF, spread=ray.spread + OFF)
         exact = replace(exact, o=mi.Point3d(moved.T), d=mi.Vector3d(turned.T))
         known = np.ones(count, np.bool_)
-        with single():
-            hit = integrator.closest(ray, mi.Bool(known))
-            found = crossing(integrator, ray, hit.object, hit.valid)
+        with single() as scene:
+            hit = scene.closest(ray, mi.Bool(known))
+            found = crossing(scene, ray, hit.object, hit.valid)
         told = np.asarray(hit.valid & ~hit.undecided)
-        true = crossing(integrator, exact, hit.object, hit.valid)
+        true = crossing(double, exact, hit.object, hit.valid)
         apart = np.abs(np.asarray(found.t, np.float64)[told] - np.asarray(true.t)[told])
         assert np.all(apart <= np.asarray(found.error)[told])
         for bounce in range(BOUNCES):
             hits, rays = [], []
             for precision, each in (("single", ray), ("double", exact)):
-                with single() if precision == "single" else nullcontext():
-                    hit = integrator.closest(each, mi.Bool(known))
-                    finish, _ = integrator.material(each, hit)
+                with single() if precision == "single" else nullcontext(double) as scene:
+                    hit = scene.closest(each, mi.Bool(known))
+                    finish, _ = scene.material(each, hit)
                     refracts = finish.kt > finish.kr
-                    mirrored = integrator.reflected(each, hit, finish, sample, None, mi.Bool(True))
-                    through = integrator.transmitted(each, hit, finish, sample, None, mi.Bool(True))[0]
+                    mirrored = reflected(scene, each, hit, finish, sample, None, mi.Bool(True))
+                    through = transmitted(scene, each, hit, finish, sample, None, mi.Bool(True))[0]
                     following = dr.select(refracts, through, mirrored)
                     dr.eval(hit, following)
                     hits.append(hit)
@@ -160,18 +163,18 @@ def test_rays_that_may_start_at_another_surface_are_undecided(mi, height, direct
     text = "0 1 -4 0 0 0 0 1 0 60 1 0 0 0 1 1 1 1 0 0 1 solid 1 1 1 1 0.4 0.6 0 1 0 0 0 1 0 0 sphere 0 0 0 1"
     scene = parse_scene(text, tmp_path / "ball.in")
     loaded = MitsubaRenderer(VARIANT, precision="mixed")._load(scene, Settings(width=4, height=3))
-    integrator, types = loaded.integrator(), real("float")
-    with integrator.prepared(loaded), dr.suspend_grad(), integrator.precisions.single():
+    types = real("float")
+    with dr.suspend_grad(), loaded.integrator().prepared(loaded).single() as prepared:
         for error, undecided in ((1e-3, True), (1e-6, False)):
             ray = start_ray(types, types.Point3(0, 0, 1 + height), types.Vector3(0, 0, direction), error)
-            assert integrator.closest(ray, mi.Bool(True)).undecided == mi.Bool(undecided)
+            assert prepared.closest(ray, mi.Bool(True)).undecided == mi.Bool(undecided)
 
 
-def crossing(integrator, ray, index, active):
+def crossing(scene, ray, index, active):
     """Where rays cross an object, and how far that may be off."""
     from mitsuba_plugins.intersection.rays import largest
 
-    return integrator._tracer.primitives.intersect(ray, index, active, largest(ray.o))
+    return scene.tracer.primitives.intersect(ray, index, active, largest(ray.o))
 
 
 def across(d, random):

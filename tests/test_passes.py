@@ -147,12 +147,12 @@ def test_few_samples_are_one_pass(renderer, small_scene):
 
 
 def test_an_error_that_dr_jit_makes_of_ctrl_c(mi, small_scene, monkeypatch):
-    from mitsuba_plugins.integrators.whitted import Whitted
+    from mitsuba_plugins.integrators import launches
 
-    def trace(self, *_):
+    def trace(*_):
         raise RuntimeError("encountered an exception") from KeyboardInterrupt()
 
-    monkeypatch.setattr(Whitted, "trace", trace)
+    monkeypatch.setattr(launches, "trace", trace)
     with pytest.raises(Interrupted):
         MitsubaRenderer(VARIANT).render(small_scene, SETTINGS)
 
@@ -301,12 +301,12 @@ def test_what_cannot_go_on(whitted, scene, tmp_path):
 
 @pytest.mark.parametrize(("width", "rows"), [(1, 1), (7, 3), (16, 4), (33, 10), (640, 9)])
 def test_pixels_are_drawn_in_tiles(mi, width, rows):
-    from mitsuba_plugins.integrators.pictures import _in_tiles, _place_in_tiles
+    from mitsuba_plugins.integrators.pixels import in_tiles, place_in_tiles
 
     first = 11
-    order = np.array(_in_tiles(width, first, rows)).astype(int) - first * width
+    order = np.array(in_tiles(width, first, rows)).astype(int) - first * width
     assert sorted(order) == list(range(width * rows))
-    assert np.array_equal(order[np.array(_place_in_tiles(width, rows))], np.arange(width * rows))
+    assert np.array_equal(order[np.array(place_in_tiles(width, rows))], np.arange(width * rows))
     row, column = np.divmod(order[: 4 * width * (rows // 4)].reshape(-1, 4), width)
     assert (np.diff(row, axis=1) == 1).all()
     assert (np.diff(column, axis=1) == 0).all()
@@ -314,12 +314,12 @@ def test_pixels_are_drawn_in_tiles(mi, width, rows):
 
 
 def test_whole_numbers_are_divided_exactly(mi):
-    from mitsuba_plugins.integrators.pictures import _divided
+    from mitsuba_plugins.integrators.pixels import divided
 
     numbers = np.random.default_rng(1).integers(0, 2**32, 4000, dtype=np.uint32)
     divisors = np.concatenate([numbers[::-1] | 1, np.array([1, 2, 3, 2**32 - 1], np.uint32)])
     multiples = (numbers[: len(divisors) // 2] // 977 * 977).astype(np.uint32)
     a = np.concatenate([numbers, multiples[:4]])
-    assert np.array_equal(np.array(_divided(mi.UInt32(a), mi.UInt32(divisors))), a // divisors)
+    assert np.array_equal(np.array(divided(mi.UInt32(a), mi.UInt32(divisors))), a // divisors)
     exact = mi.UInt32(multiples), mi.UInt32(np.full(len(multiples), 977, np.uint32))
-    assert np.array_equal(np.array(_divided(*exact)), multiples // 977)
+    assert np.array_equal(np.array(divided(*exact)), multiples // 977)

@@ -343,15 +343,13 @@ HOST_DIVISIONS = {
     "intersection/shapes/polyhedron.py": {"contacts", "_normalised"},
     "intersection/shapes/quadric.py": {"_form", "_rows", "_anchor", "_contact"},
     "intersection/shapes/sphere.py": {"contacts"},
-    "integrators/doubts.py": {"share_in_double"},
     "integrators/pace.py": {"__init__", "rows", "samples", "passes", "launch"},
+    "integrators/parameters.py": {"read_parameters"},
     "sampler.py": {"disc_point", "cone_direction", "_small_turn"},
     "trial.py": {"_memory"},
-    "integrators/pictures.py": {
-        *("bands_by_passes", "signed_bands", "chosen_pixels", "_stage", "told"),
-        *("sample_offsets", "_place_in_tiles", "_shown"),
-    },
-    "integrators/whitted.py": {"__init__"},
+    "integrators/pictures.py": {"bands_by_passes", "signed_bands", "chosen_pixels", "_stage", "told"},
+    "integrators/pixels.py": {"sample_offsets", "place_in_tiles", "mean_colors"},
+    "integrators/precisions.py": {"share_in_double"},
 }
 """Functions that divide Python's or NumPy's numbers, or whole numbers, or build a path."""
 
@@ -427,6 +425,23 @@ def test_symbolic_and_evaluated_loops_agree(mi, small_scene, intersections):
         evaluated = np.asarray(mi.render(scene))
     assert np.isfinite(symbolic).all()
     assert np.abs(symbolic - evaluated).max() < 1e-6
+
+
+def test_parameters_may_be_changed_between_pictures(mi, small_scene):
+    from converter.to_mitsuba.load import load_description
+    from converter.to_mitsuba.scene import scene_description
+
+    scene = load_description(scene_description(small_scene, Settings(width=48, height=36)))
+    parameters = mi.traverse(scene.integrator())
+    before = np.asarray(mi.render(scene))
+    for name, value in (("cutoff", 2.0), ("max_depth", 0), ("ambient", mi.Color3d(0)), ("background", mi.Color3d(9))):
+        kept = type(parameters[name])(parameters[name])
+        parameters[name] = value
+        parameters.update()
+        assert (np.asarray(mi.render(scene)) != before).any(), name
+        parameters[name] = kept
+        parameters.update()
+    assert np.array_equal(np.asarray(mi.render(scene)), before)
 
 
 def test_direct_integrator_draws_the_same_light(mi, small_scene):

@@ -86,6 +86,10 @@ def test_texture_files_say_all(textured: Scene, tmp_path: Path) -> None:
     data = found.textures["a_pigment_0.ppm"]
     assert data.endswith(b"3 2\n255\n" + bytes([*range(90, 180, 10), *range(0, 90, 10)]))
 
+    file = textured.pigments[0].file
+    file.write_bytes(b"P6 1 1 255\n" + bytes([13, 10, 20]))
+    assert povray_scene(textured, Settings()).textures["scene_pigment_0.ppm"].endswith(b"1 1\n255\r\r\n\x14")
+
     from converter.images.write import write_image
 
     fine = Texmap(tmp_path / "fine.exr", *textured.pigments[0].__getstate__()[1:])

@@ -131,6 +131,16 @@ def test_textures(
 
 
 @needs_povray
+@pytest.mark.parametrize("first", [9, 10, 13, 32, 35])
+def test_textures_that_begin_like_a_header(plain: Scene, tmp_path: Path, first: int) -> None:
+    """White space and comments end where the header does."""
+    file = tmp_path / "texels.ppm"
+    file.write_bytes(b"P6 2 2 255\n" + bytes([first, 90, 200, 40, 50, 60] * 2))
+    texmap = Texmap(file, (0.7, 0.1, 0.0, 0.2), (0.0, 0.9, 0.3, 0.1))
+    agree(replace(plain, pigments=(texmap, *plain.pigments[1:])), Settings(80, 60, cutoff=0, max_depth=4), pixels=2)
+
+
+@needs_povray
 @pytest.mark.parametrize("finish", [(0.2, 0.3, 0, 1.0), (0.0, 0.3, 0.2, 0.5), (0.1, 0, 0.3, 2), (0, 0, 1, 0.3)])
 def test_glass(plain: Scene, finish: tuple[float, float, float, float]) -> None:
     """With no kr, with kr + kt above and below 1: the local colour is not dimmed, total reflection weighs kr + kt."""

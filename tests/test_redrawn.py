@@ -11,10 +11,15 @@ from converter.renderers.mitsuba import MitsubaRenderer
 from converter.studies.families.scenes import MATTE, MIRROR, floor, light, scene
 
 
-def floor_before_wall():
+def floor_before_wall(up=(0.0, 1.0, 0.0)):
     """Where they meet, in a line that a row of rays meets, the floor counts: a mirror, so that a ray is dropped."""
     bodies = [(floor(-1.0), RED, replace(MIRROR, kd=0.5)), (wall((0.0, 0.0, 1.0), 3.0), GREEN, MATTE)]
-    return scene(view((0.0, 0.0, 0.0)), bodies, [light((1.0, 2.0, 1.0))])
+    return scene(view((0.0, 0.0, 0.0), up=up), bodies, [light((1.0, 2.0, 1.0))])
+
+
+def floor_aside():
+    """The line goes from row to row, and meets one of the three samples of a launch."""
+    return floor_before_wall(up=(1.0, 0.0, 0.0))
 
 
 def shadows_of_edges():
@@ -26,6 +31,7 @@ def shadows_of_edges():
 SCENES = {
     "floor before wall": (floor_before_wall, replace(SETTINGS, max_depth=0)),
     "nine samples": (floor_before_wall, replace(SETTINGS, max_depth=0, samples=9)),
+    "one of three samples": (floor_aside, replace(SETTINGS, max_depth=0, samples=9)),
     "balls that touch": TIE_SCENES["balls that touch"][1:],
     "shadows of edges": (shadows_of_edges, SETTINGS),
 }
@@ -45,29 +51,29 @@ def draw(mi, monkeypatch):
     """Draws scenes in bands of five rows and launches of three samples; `postponing` ties, or deciding at once."""
     import drjit as dr
 
-    from mitsuba_plugins.integrators import pictures
+    from mitsuba_plugins.integrators import launches as drawing
     from mitsuba_plugins.integrators.pace import Pace
 
-    add_samples, launches = pictures._add_samples, []
+    add_samples, launches = drawing._add_samples, []
 
-    def spy(integrator, sensor, color, *rest):
-        result = add_samples(integrator, sensor, color, *rest)
+    def spy(scene, color, *rest):
+        result = add_samples(scene, color, *rest)
         dr.eval(result)
         launches.append((dr.width(result[0]), int(dr.count(result[2] | dr.zeros(mi.Bool, dr.width(color)))[0])))
         return result
 
-    monkeypatch.setattr(pictures, "_add_samples", spy)
+    monkeypatch.setattr(drawing, "_add_samples", spy)
     monkeypatch.setattr(Pace, "rows", lambda self, width: 5)
     monkeypatch.setattr(Pace, "samples", lambda self, pixels: 3)
 
     def drawn(name, postponing):
-        from mitsuba_plugins.integrators.whitted import Whitted
+        from mitsuba_plugins.integrators.kernel_scene import KernelScene
 
         make, settings = SCENES[name]
         launches.clear()
         with monkeypatch.context() as patch:
             if not postponing:
-                patch.setattr(Whitted, "postpone_ties", lambda self, postpones: None)
+                patch.setattr(KernelScene, "postpone_ties", lambda self, postpones: None)
             rendering = MitsubaRenderer(VARIANT).render(make(), settings)
         return Drawn(np.array(rendering.pixels), rendering.statistics["pixels_too_deep"], list(launches))
 

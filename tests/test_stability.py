@@ -378,14 +378,39 @@ def test_zero_is_a_decade_beyond_the_other_values():
     assert axes.get_xticklabels()[-1].get_text() == "0"
 
 
-def test_the_lines_are_black_and_grey_and_differ():
+def test_a_method_has_one_line_in_all_panels_and_none_is_like_another():
     figure = stability_figure(made_studies())
+    (legend,) = figure.legends
+    entries = dict(zip((text.get_text() for text in legend.get_texts()), legend.get_lines(), strict=True))
+    assert list(entries) == ["native", "mitsuba", "native-float", "fails here first"]
+    looks = {(line.get_color(), line.get_linestyle()): name for name, line in entries.items()}
+    assert len(looks) == len(entries)
     for axes in figure.axes:
-        drawn = [line for line in axes.lines if line.get_zorder() == 3]
-        assert len({(line.get_linestyle(), line.get_linewidth(), str(line.get_color())) for line in drawn}) == len(
-            drawn
-        )
-        assert all(c == "black" or 0 <= float(c) <= 1 for c in (line.get_color() for line in drawn))
+        drawn = [looks[line.get_color(), line.get_linestyle()] for line in axes.lines if line.get_zorder() == 3]
+        named = [text for text in axes.texts if text.get_position()[0] > 1]
+        assert sorted(drawn) == sorted(text.get_text().split(",")[0] for text in named)
+        for text in named:
+            assert text.get_color() == entries[text.get_text().split(",")[0]].get_color()
+
+
+def test_dashes_lie_over_lines_without():
+    figure = stability_figure([study_family(family(), [FLOAT, NATIVE], Fake(1))])
+    (axes,) = figure.axes
+    drawn = [line.get_linestyle() for line in axes.lines if line.get_zorder() == 3]
+    assert drawn == ["-", "--"]
+
+
+def test_axes_are_named_and_the_legend_covers_no_panel():
+    for studies in (made_studies()[:1], made_studies()):
+        figure = stability_figure(studies)
+        figure.draw_without_rendering()
+        (legend,) = figure.legends
+        box = legend.get_window_extent()
+        for axes, study in zip(figure.axes, studies, strict=True):
+            assert (axes.get_xlabel(), axes.get_ylabel()) == (study.family.stress, "wrong pixels")
+            assert axes.get_tightbbox().y1 <= box.y0
+        assert 0 <= box.x0 < box.x1 <= figure.bbox.x1
+        assert box.y1 <= figure.bbox.y1
 
 
 @pytest.mark.parametrize(

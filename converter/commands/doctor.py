@@ -57,7 +57,7 @@ def _findings() -> tuple[list[tuple[str, str]], list[str], bool]:
     from converter.commands.doctor_probe import try_native
     from converter.grade.sandbox import find_walls
     from converter.renderers.native import available_cores
-    from mitsuba_plugins.backend import MINIMUM_LLVM, VARIANTS, find_llvm
+    from mitsuba_plugins.backend import VARIANTS, find_llvm
     from mitsuba_plugins.trial import cuda_device, remember_cuda, try_variant
 
     rows = [("cores", str(available_cores()))]
@@ -72,7 +72,6 @@ def _findings() -> tuple[list[tuple[str, str]], list[str], bool]:
     device = cuda_device()
     rows.append(("CUDA device", device or "none"))
     working = []
-    blames_llvm = False
     for variant in VARIANTS:
         if variant == "cuda_ad_rgb" and device is None:
             rows.append((variant, "needs a CUDA device"))
@@ -83,28 +82,15 @@ def _findings() -> tuple[list[tuple[str, str]], list[str], bool]:
             remember_cuda(trial)
         if trial.works:
             working.append(variant)
-        elif variant == "llvm_ad_rgb" and "LLVM" in trial.told:
-            blames_llvm = True
     if device is not None and "cuda_ad_rgb" not in working:
         advice.append("CUDA failed its trial: --variant auto takes llvm_ad_rgb.")
     if not working:
         advice.append("Mitsuba does not run here; the native tracer needs none of it: --method native.")
-    if library is None or blames_llvm:
-        advice.append(_llvm_advice(MINIMUM_LLVM, library is not None and library.by_user))
     rows.append(("kernel cache", _kernel_cache()))
     walls = find_walls()
     rows.append(("walls for grade", walls.bubblewrap or f"none: {walls.why_not}"))
     rows.append(("page", f"needs {INSTALL}" if missing() else "whitted serve can show it"))
     return rows, advice, native.works and bool(working)
-
-
-def _llvm_advice(least: int, by_user: bool) -> str:
-    if by_user:
-        return "DRJIT_LIBLLVM_PATH names the LLVM library that is used: unset it, or name another."
-    return (
-        f"llvm_ad_rgb needs an LLVM library of version {least} or newer. On x86-64 Linux: pip install "
-        f"karellen-llvm-core. Elsewhere your system's (Debian: apt install llvm-{least}; macOS: brew install llvm)."
-    )
 
 
 def _kernel_cache() -> str:

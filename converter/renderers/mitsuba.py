@@ -73,30 +73,25 @@ class MitsubaRenderer:
 
         width, height = settings.drawn_size
         pixels = np.zeros((height, width, 3), dtype=np.float32)
-        from mitsuba_plugins.integrators import pictures  # when a variant is set
+        from mitsuba_plugins.integrators.pictures import Picture  # when a variant is set
 
         integrator, sensor = mitsuba_scene.integrator(), mitsuba_scene.sensors()[0]
+        picture = Picture(integrator, mitsuba_scene, sensor)
         all_passes = passes(sensor.sampler().sample_count())
 
         def rendering() -> Rendering:
             seconds = {"start": ready - started, "build": built - ready, "render": time.perf_counter() - built}
-            statistics = {
-                "variant": variant,
-                "intersections": integrator.intersections,
-                "precision": integrator.precision,
-                "pixels_too_deep": integrator.pixels_too_deep,
-                **_in_double(integrator),
-            }
-            whole = _whole_passes(integrator.sums, pixels.shape, all_passes, variant)
+            statistics = _statistics(variant, integrator, picture, picture.pixels_too_deep)
+            whole = _whole_passes(picture.sums, pixels.shape, all_passes, variant)
             return Rendering(pixels, width, height, seconds, statistics, whole)
 
         try:
             with _threads(settings.threads):
                 if len(all_passes) == 1:
-                    bands = pictures.bands(integrator, mitsuba_scene, sensor, progress=progress)
+                    bands = picture.bands(progress=progress)
                 else:
                     sums = _sums_to_go_on_from(start, pixels)
-                    bands = pictures.bands_by_passes(integrator, mitsuba_scene, sensor, sums, progress)
+                    bands = picture.bands_by_passes(sums, progress)
                 for first, color in bands:
                     rows = np.asarray(color).reshape(-1, width, 3)
                     if len(rows) == height:
@@ -133,31 +128,26 @@ class MitsubaRenderer:
 
         width, height = settings.width, settings.height
         pixels = np.zeros((height, width, 3), dtype=np.float32)
-        from mitsuba_plugins.integrators import pictures  # when a variant is set
+        from mitsuba_plugins.integrators.pictures import Picture  # when a variant is set
 
         integrator, sensor = mitsuba_scene.integrator(), mitsuba_scene.sensors()[0]
+        picture = Picture(integrator, mitsuba_scene, sensor)
         samples = sensor.sampler().sample_count()
         too_deep = [0]
 
         def rendering() -> Rendering:
             seconds = {"start": ready - started, "build": built - ready, "render": time.perf_counter() - built}
-            statistics = {
-                "variant": variant,
-                "intersections": integrator.intersections,
-                "precision": integrator.precision,
-                "pixels_too_deep": max(*too_deep, integrator.pixels_too_deep),
-                **_in_double(integrator),
-            }
+            statistics = _statistics(variant, integrator, picture, max(*too_deep, picture.pixels_too_deep))
             return Rendering(pixels, width, height, seconds, statistics)
 
         def add(sums: Any, mask: Any, cells: list[int], count: int, told: Progress | None) -> None:
             """Add the samples of these cells to the sums of pixels, and show the mean, of `count`."""
             numbers = np.flatnonzero(mask).astype(np.uint32)
-            for at, color in pictures.chosen_pixels(integrator, mitsuba_scene, sensor, numbers, cells, told):
+            for at, color in picture.chosen_pixels(numbers, cells, told):
                 chosen = numbers[at : at + color.shape[1]]
                 sums.reshape(-1, 3)[chosen] += np.asarray(color).T
                 pixels.reshape(-1, 3)[chosen] = sums.reshape(-1, 3)[chosen] / count
-            too_deep.append(integrator.pixels_too_deep)
+            too_deep.append(picture.pixels_too_deep)
 
         try:
             with _threads(settings.threads):
@@ -177,12 +167,11 @@ class MitsubaRenderer:
                     parts = halves(samples)
                     first, count = share_of_first(sum(map(len, parts))), 0
                     told = part_of(progress, 0, first)
-                    bands = pictures.signed_bands(integrator, mitsuba_scene, sensor, refinement.least_weight, told)
-                    for row, color, words in bands:
+                    for row, color, words in picture.signed_bands(refinement.least_weight, told):
                         rows = np.asarray(color).reshape(-1, width, 3)
                         pixels[row : row + len(rows)] = rows
                         signatures[row : row + len(rows)] = np.asarray(words).reshape(-1, width)
-                    too_deep.append(integrator.pixels_too_deep)
+                    too_deep.append(picture.pixels_too_deep)
                     wanted = refinement.halves(signatures, pixels)
                     for done, cells in enumerate(parts):
                         count += len(cells)
@@ -255,11 +244,11 @@ def _whole_passes(sums: Any, shape: tuple[int, ...], passes: list[list[int]], va
     return Passes(sums.passes, len(passes), colors, too_deep, {"variant": variant, "samples": samples})
 
 
-def _in_double(integrator: Any) -> dict[str, Any]:
-    """Of a picture in mixed precision, the share of what is drawn that is drawn in double."""
-    if integrator.precision != "mixed":
-        return {}
-    return {"drawn_in_double": 1.0 if integrator.precisions is None else integrator.precisions.share_in_double}
+def _statistics(variant: str, integrator: Any, picture: Any, pixels_too_deep: int) -> dict[str, Any]:
+    """What is told of a picture; in mixed precision also the share of what is drawn that is drawn in double."""
+    way, precision = integrator.parameters.intersections, integrator.parameters.precision
+    told = {"variant": variant, "intersections": way, "precision": precision, "pixels_too_deep": pixels_too_deep}
+    return {**told, "drawn_in_double": picture.share_in_double} if precision == "mixed" else told
 
 
 def _comes_from_interrupt(error: BaseException | None) -> bool:

@@ -25,19 +25,20 @@ def trace_pixels(scene: Any, pixels: Sequence[tuple[int, int]]) -> list[PixelRec
     """
     import mitsuba as mi
 
-    from mitsuba_plugins.integrators.pictures import sample_offsets
+    from mitsuba_plugins.integrators.pixels import sample_offsets
+    from mitsuba_plugins.integrators.primary_rays import name_sample, pixel_key, primary_ray
 
-    integrator, sensor = scene.integrator(), scene.sensors()[0]
+    sensor = scene.sensors()[0]
     offsets = sample_offsets(sensor.sampler().sample_count())
     x, y = (np.array([pixel[k] + offset[k] for pixel in pixels for offset in offsets], float) for k in (0, 1))
     columns, rows = (np.repeat([pixel[k] for pixel in pixels], len(offsets)) for k in (0, 1))
-    with integrator.prepared(scene, sensor):
-        key = integrator.pixel_key(mi.Point2d(column(mi.Float64, columns), column(mi.Float64, rows)))
-        number = column(mi.UInt32, np.tile(np.arange(len(offsets)), len(pixels)))
-        position = mi.Point2d(column(mi.Float64, x), column(mi.Float64, y))
-        primary = integrator.primary_ray(sensor, position, integrator.name_sample(key, number))
-        rays = _Rays.of(primary, (key, number, mi.UInt32(PRIMARY_PATH)), len(x))
-        roots = _Tracer(integrator).trees(rays)
+    prepared = scene.integrator().prepared(scene, sensor).deciding
+    key = pixel_key(prepared, mi.Point2d(column(mi.Float64, columns), column(mi.Float64, rows)))
+    number = column(mi.UInt32, np.tile(np.arange(len(offsets)), len(pixels)))
+    position = mi.Point2d(column(mi.Float64, x), column(mi.Float64, y))
+    primary = primary_ray(prepared, position, name_sample(prepared, key, number))
+    rays = _Rays.of(primary, (key, number, mi.UInt32(PRIMARY_PATH)), len(x))
+    roots = _Tracer(prepared).trees(rays)
     result = []
     for i, pixel in enumerate(pixels):
         samples = roots[i * len(offsets) : (i + 1) * len(offsets)]
@@ -96,11 +97,11 @@ class _Rays:
 
 
 class _Tracer:
-    """Follows rays by the integrator's steps, and writes down what happens to them."""
+    """Follows rays by the integrator's steps, and writes down what happens to them; the scene is a `KernelScene`."""
 
-    def __init__(self, integrator: Any) -> None:
-        self._integrator = integrator
-        self._cutoff = integrator.cutoff[0]
+    def __init__(self, scene: Any) -> None:
+        self._scene = scene
+        self._cutoff = scene.cutoff[0]
 
     def trees(self, rays: _Rays) -> list[RayRecord]:
         """The rays' records, with everything below them."""
@@ -126,8 +127,11 @@ class _Tracer:
 
     def _times(self, rays: _Rays) -> list[float | None]:
         """The time of each ray, if it has one."""
+        from mitsuba_plugins.integrators.primary_rays import name_sample, timed
+
         key, number, _ = rays.names()
-        time = self._integrator.timed(rays.ray(self._integrator.types), self._integrator.name_sample(key, number)).time
+        scene = self._scene
+        time = timed(scene, rays.ray(scene.types), name_sample(scene, key, number)).time
         return [None] * len(rays) if time is None else _list(time, len(rays))
 
     def _follow(self, level: list[RayRecord], rays: _Rays) -> tuple[list[RayRecord], _Rays, list[dict[RayKind, float]]]:
@@ -137,28 +141,32 @@ class _Tracer:
         import drjit as dr
         import mitsuba as mi
 
-        integrator, count = self._integrator, len(rays)
-        ray = rays.ray(integrator.types)
+        from mitsuba_plugins.integrators.primary_rays import name_sample, timed
+        from mitsuba_plugins.integrators.secondary_rays import followed, reflected, transmitted
+        from mitsuba_plugins.integrators.shading import local_radiance
+
+        scene, count = self._scene, len(rays)
+        ray = rays.ray(scene.types)
         key, number, path = rays.names()
-        sample = integrator.name_sample(key, number)
+        sample = name_sample(scene, key, number)
         # Numbers and no expressions of them: every bounce then runs the same few kernels.
-        ray = integrator.timed(ray, sample)
+        ray = timed(scene, ray, sample)
         dr.make_opaque(ray, sample, path)
-        hit = integrator.closest(ray, lanes(count))
+        hit = scene.closest(ray, lanes(count))
         dr.make_opaque(hit)
-        finish, pigment = integrator.material(ray, hit)
+        finish, pigment = scene.material(ray, hit)
         dr.make_opaque(finish, pigment)
-        through, total = integrator.transmitted(ray, hit, finish, sample, path, hit.valid)
-        mirrored = integrator.reflected(ray, hit, finish, sample, path, hit.valid)
+        through, total = transmitted(scene, ray, hit, finish, sample, path, hit.valid)
+        mirrored = reflected(scene, ray, hit, finish, sample, path, hit.valid)
         depth = level[0].depth + 1
-        throughput = column(integrator.types.Float, [record.throughput for record in level])
-        mirror_throughput, mirrors, through_throughput, refracts = integrator.followed(
-            throughput, dr.opaque(mi.UInt32, depth, count), hit, finish
+        throughput = column(scene.types.Float, [record.throughput for record in level])
+        mirror_throughput, mirrors, through_throughput, refracts = followed(
+            scene, throughput, dr.opaque(mi.UInt32, depth, count), hit, finish
         )
-        local, *_ = integrator.local_radiance(ray, hit, finish, pigment, sample, path)
+        local, *_ = local_radiance(scene, ray, hit, finish, pigment, sample, path)
         dr.eval(through, mirrored, total, local, mirror_throughput, mirrors, through_throughput, refracts)
 
-        local_colors, background = _rows(local, count), _rows(integrator.background, 1)[0]
+        local_colors, background = _rows(local, count), _rows(scene.parameters.background, 1)[0]
         hits = self._hits(ray, hit, finish, pigment, total, (sample, path), count)
         for record, found, color in zip(level, hits, local_colors, strict=True):
             record.hit = found
@@ -212,10 +220,8 @@ class _Tracer:
 
     def _plane(self, index: int, primitive: int) -> int | None:
         """The plane's index in the scene file."""
-        integrator = self._integrator
-        piece: int | None = integrator.surfaces[index].pieces[
-            (primitive & UPRIGHT) - integrator.first_primitives[index]
-        ]
+        first = self._scene.first_primitives[index]
+        piece: int | None = self._scene.surfaces[index].pieces[(primitive & UPRIGHT) - first]
         return piece
 
     def _lights(
@@ -225,14 +231,17 @@ class _Tracer:
         import drjit as dr
         import mitsuba as mi
 
+        from mitsuba_plugins.integrators.shading import light
+
+        scene = self._scene
         result: list[list[LightRecord]] = [[] for _ in range(count)]
-        for k in range(self._integrator.light_count if self._integrator.shadows else 0):
+        for k in range(scene.lights.count if scene.parameters.shadows else 0):
             index = dr.opaque(mi.UInt32, k, count)
-            light = self._integrator.light(index, ray, hit, finish, pigment, lanes(count), *sampled)
-            dr.eval(light)
-            cosine, attenuation = _list(light.cosine, count), _list(light.attenuation, count)
-            blocker = _list(light.blocker, count)
-            diffuse, specular = _rows(light.diffuse, count), _rows(light.specular, count)
+            added = light(scene, index, ray, hit, finish, pigment, lanes(count), *sampled)
+            dr.eval(added)
+            cosine, attenuation = _list(added.cosine, count), _list(added.attenuation, count)
+            blocker = _list(added.blocker, count)
+            diffuse, specular = _rows(added.diffuse, count), _rows(added.specular, count)
             for i, records in enumerate(result):
                 shadowed_by = None if blocker[i] == NOTHING else blocker[i]
                 records.append(LightRecord(k, cosine[i], shadowed_by, attenuation[i], diffuse[i], specular[i]))

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 from converter.files import shown_name
 from converter.studies.antialiasing import TRUTH, AntialiasingStudy, Point
-from converter.studies.chart_figure import MARK, NAME, STYLES, machine_line, save
+from converter.studies.chart_figure import GROUND, MARK, NAME, STYLES, machine_line, save
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -46,18 +46,28 @@ def antialiasing_chart(studies: Sequence[AntialiasingStudy]) -> "Figure":
 
 
 def _draw(axes: "Axes", study: AntialiasingStudy, place: Callable[[Point], float], label: str) -> None:
-    from matplotlib.ticker import FuncFormatter, NullFormatter
+    from matplotlib.ticker import FuncFormatter, LogLocator, NullFormatter
 
     lines = {family: cycle(LINES) for family in STYLES}
     for curve in study.curves:
         style = {**STYLES[curve.family], "linestyle": next(lines[curve.family])}
         x, y = [place(point) for point in curve.points], [point.rms for point in curve.points]
         axes.plot(x, y, color="black", ms=MARK, mew=0.7, lw=0.9, label=curve.name, **style)
-        for point, at in ((curve.points[k], (x[k], y[k])) for k in (0, -1)):
-            axes.annotate(point.name, at, xytext=(4, 3), textcoords="offset points", fontsize=NAME)
+        for k, offset, side in ((0, -5, "right"), (-1, 5, "left")):  # away from the curve
+            axes.annotate(
+                curve.points[k].name,
+                (x[k], y[k]),
+                xytext=(offset, 0),
+                textcoords="offset points",
+                ha=side,
+                va="center",
+                fontsize=NAME,
+                bbox=GROUND,
+            )
     axes.set_xscale("log")
     axes.set_yscale("log")
     for axis in (axes.xaxis, axes.yaxis):
+        axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
         axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
         axis.set_minor_formatter(NullFormatter())
     axes.tick_params(labelsize=7)

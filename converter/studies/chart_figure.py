@@ -41,7 +41,7 @@ STYLES: dict[Family, dict[str, Any]] = {
 
 
 _FLOOR = "floor: double against long double"
-_GROUND = {"boxstyle": "square,pad=0.05", "facecolor": "white", "alpha": 0.75, "linewidth": 0}
+GROUND = {"boxstyle": "square,pad=0.05", "facecolor": "white", "alpha": 0.75, "linewidth": 0}
 """Behind a name, so that lines under it do not strike it out."""
 
 
@@ -274,7 +274,7 @@ class _ErrorPanel:
         sizes = np.array([self._size(mark.name) for mark in self.marks])
         for mark, anchor, box in zip(self.marks, anchors, place_labels(crowd, sizes), strict=True):
             x, y = to_data(box[:2])
-            axes.text(x, y, mark.name, fontsize=NAME, va="bottom", ha="left", zorder=2.5, bbox=_GROUND)
+            axes.text(x, y, mark.name, fontsize=NAME, va="bottom", ha="left", zorder=2.5, bbox=GROUND)
             line = leader(anchor, box)
             if np.hypot(*(line[2:] - line[:2])) > (MARK / 2 + 4) * dots:
                 ends = to_data(line.reshape(2, 2))

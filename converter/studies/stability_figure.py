@@ -5,7 +5,7 @@ import textwrap
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
 from io import StringIO
-from itertools import accumulate
+from itertools import accumulate, cycle
 from pathlib import Path
 from statistics import mean
 from typing import TYPE_CHECKING, Any
@@ -24,18 +24,25 @@ PANEL, NAMES, ROW, MARGINS = 3.1, 1.75, 2.5, 1.15
 """Inches: a panel's width, the room for names to its right, a row's height, and what of it is above and below."""
 NAME = 6.5
 """Size of a method's name, in points."""
+SOLID, DASHED, DOTTED, BOTH = "-", (0, (5, 2)), (0, (1, 1.2)), (0, (6, 1.5, 1, 1.5))
 STYLES: tuple[dict[str, Any], ...] = (
-    {"ls": "-", "lw": 2.6, "color": "0.78"},
-    {"ls": "-", "lw": 0.9, "color": "black"},
-    {"ls": (0, (4, 2)), "lw": 0.9, "color": "black"},
-    {"ls": (0, (1, 1.5)), "lw": 1.2, "color": "black"},
-    {"ls": (0, (6, 1.5, 1, 1.5)), "lw": 0.9, "color": "black"},
-    {"ls": "-", "lw": 0.9, "color": "0.45"},
-    {"ls": (0, (4, 2)), "lw": 0.9, "color": "0.45"},
-    {"ls": (0, (1, 1.5)), "lw": 1.2, "color": "0.45"},
+    {"color": "#0072b2", "ls": SOLID, "lw": 1.8},
+    {"color": "#56b4e9", "ls": DASHED, "lw": 1.2},
+    {"color": "#d55e00", "ls": SOLID, "lw": 1.8},
+    {"color": "#e69f00", "ls": DASHED, "lw": 1.2},
+    {"color": "#8c3b1a", "ls": DOTTED, "lw": 1.4},
+    {"color": "#009e73", "ls": SOLID, "lw": 1.8},
+    {"color": "#cc79a7", "ls": BOTH, "lw": 1.2},
+    {"color": "#6a3d9a", "ls": DASHED, "lw": 1.2},
+    {"color": "#555555", "ls": BOTH, "lw": 1.2},
+    {"color": "#000000", "ls": DOTTED, "lw": 1.4},
 )
-"""The lines of a panel in turn, in black and grey: names at their ends tell them apart, and no marks, for there are
-thousands of points."""
+"""The methods' lines, in their order, the same in every panel: colours that are told apart without red or green, too
+(most of them Okabe and Ito's), and dashes where colours are close."""
+CROSS: dict[str, Any] = {"marker": "x", "ls": "", "color": "black", "ms": 7, "mew": 1.2}
+"""Where a method fails first."""
+ENTRY = 0.155
+"""Height of a line of the legend, in inches."""
 
 
 @dataclass(frozen=True, slots=True)
@@ -85,34 +92,73 @@ def stability_figure(studies: Sequence[FamilyStudy]) -> "Figure":
 
     columns = min(COLUMNS, len(studies))
     rows = math.ceil(len(studies) / columns)
-    width, height = columns * (PANEL + NAMES), rows * ROW
+    width, head = columns * (PANEL + NAMES), _legend_height(studies, columns)
+    height = rows * ROW + head
     figure = Figure((width, height))
+    styles = _styles(studies)
+    _draw_legend(figure, styles, columns)
     shares = [share for study in studies for line in lines(study) for share in line.shares]
     scale = replace(error_scale(shares, [0.0]), high=1.4)
     for k, study in enumerate(studies):
         row, column = divmod(k, columns)
-        left = column * (PANEL + NAMES) + 0.55
-        bottom = height - (row + 1) * ROW + 0.45
-        axes = figure.add_axes((left / width, bottom / height, (PANEL - 0.6) / width, (ROW - MARGINS) / height))
-        _draw_panel(axes, study, scale)
+        left = column * (PANEL + NAMES) + 0.68
+        bottom = (rows - row - 1) * ROW + 0.45
+        axes = figure.add_axes((left / width, bottom / height, (PANEL - 0.73) / width, (ROW - MARGINS) / height))
+        _draw_panel(axes, study, scale, styles)
     return figure
 
 
-def _draw_panel(axes: "Axes", study: FamilyStudy, scale: ErrorScale) -> None:
+def _styles(studies: Sequence[FamilyStudy]) -> dict[str, dict[str, Any]]:
+    """Each method's line, by its name."""
+    names = dict.fromkeys(name for study in studies for name, outcomes in study.outcomes.items() if outcomes)
+    return dict(zip(names, cycle(STYLES), strict=False))
+
+
+def _entries(columns: int) -> int:
+    """How many entries of the legend stand side by side."""
+    return 2 * columns
+
+
+def _legend_height(studies: Sequence[FamilyStudy], columns: int) -> float:
+    """Inches that the legend takes, and the room about it."""
+    return math.ceil((len(_styles(studies)) + 1) / _entries(columns)) * ENTRY + 0.3
+
+
+def _draw_legend(figure: "Figure", styles: dict[str, dict[str, Any]], columns: int) -> None:
+    from matplotlib.lines import Line2D
+
+    handles = [Line2D([], [], label=name, **style) for name, style in styles.items()]
+    handles.append(Line2D([], [], label="fails here first", **CROSS))
+    width, height = figure.get_size_inches()
+    figure.legend(
+        handles=handles,
+        loc="upper left",
+        bbox_to_anchor=(0.5 / width, 1 - 0.05 / height),
+        borderaxespad=0,
+        ncols=_entries(columns),
+        fontsize=NAME + 0.5,
+        handlelength=4,
+        columnspacing=2,
+        frameon=False,
+    )
+
+
+def _draw_panel(axes: "Axes", study: FamilyStudy, scale: ErrorScale, styles: dict[str, dict[str, Any]]) -> None:
     family, drawn = study.family, lines(study)
     axes.set_title(family.name, fontsize=8, fontweight="bold", loc="left", pad=25)
-    about = textwrap.fill(family.about, 68)
+    about = textwrap.fill(family.about, 64)
     axes.text(0, 1.03, about, fontsize=5.5, transform=axes.transAxes, va="bottom", color="0.2")
     places = _places(family.values)
     _scale_axes(axes, study, scale, places)
-    for line, style in zip(drawn, STYLES * len(drawn), strict=False):
+    # Dashes over lines without, so that both are seen where they run together.
+    for line in sorted(drawn, key=lambda line: styles[line.names[0]]["ls"] != SOLID):
         x = [places[value] for value in line.values]
         y = [scale.place(share) for share in line.shares]
-        axes.plot(x, y, zorder=3, clip_on=False, **style)
+        axes.plot(x, y, zorder=3, clip_on=False, **styles[line.names[0]])
         failing = list(line.first_failures)
         marked = [x[i] for i in failing], [y[i] for i in failing]
-        axes.plot(*marked, "x", color="black", ms=8, mew=1.3, zorder=4, clip_on=False)
-    _name_lines(axes, drawn, scale)
+        axes.plot(*marked, zorder=4, clip_on=False, **CROSS)
+    _name_lines(axes, drawn, scale, styles)
 
 
 def _places(values: Sequence[float]) -> dict[float, float]:
@@ -143,15 +189,18 @@ def _scale_axes(axes: "Axes", study: FamilyStudy, scale: ErrorScale, places: dic
     told = {place: number(value) for value, place in places.items()}
     axes.set_xticks(shown, [told[place] for place in shown], fontsize=6)
     axes.set_xlabel(study.family.stress, fontsize=6.5, labelpad=1.5)
+    axes.set_ylabel("wrong pixels", fontsize=6.5, labelpad=4)
 
 
-def _name_lines(axes: "Axes", drawn: Sequence[Line], scale: ErrorScale) -> None:
-    """Each name to the right of its line's end, and a thin line from there where others push it away."""
+def _name_lines(axes: "Axes", drawn: Sequence[Line], scale: ErrorScale, styles: dict[str, dict[str, Any]]) -> None:
+    """Each name to the right of its line's end, in its colour, and a thin line from there where others push it away."""
     texts = [textwrap.fill(", ".join(line.names), 27, break_on_hyphens=False) for line in drawn]
     height = (ROW - MARGINS) * 72
     ends = [_height_of(scale, line.shares[-1]) * height for line in drawn]
     sizes = [(text.count("\n") + 1) * (NAME + 1.2) + 1.5 for text in texts]
-    for text, end, place in zip(texts, ends, spread(ends, sizes, height + NAME), strict=True):
+    places = spread(ends, sizes, height + NAME)
+    for line, text, end, place in zip(drawn, texts, ends, places, strict=True):
+        color = styles[line.names[0]]["color"]
         axes.annotate(
             text,
             (1.01, end / height),
@@ -160,10 +209,11 @@ def _name_lines(axes: "Axes", drawn: Sequence[Line], scale: ErrorScale) -> None:
             textcoords=axes.transAxes,
             annotation_clip=False,
             fontsize=NAME,
+            color=color,
             va="center",
             ha="left",
             linespacing=1.05,
-            arrowprops={"arrowstyle": "-", "lw": 0.4, "color": "0.4", "shrinkA": 1, "shrinkB": 0, "relpos": (0, 0.5)},
+            arrowprops={"arrowstyle": "-", "lw": 0.5, "color": color, "shrinkA": 1, "shrinkB": 0, "relpos": (0, 0.5)},
         )
 
 

@@ -56,7 +56,7 @@ say so, and name the method that holds; of POV-Ray nobody is warned. The study a
 
 ![Share of wrong pixels over the stressed number, a panel a family, a line a method]({CHART})
 
-A cross marks where a method fails first; methods that do the same share a line.
+A cross marks where a method fails first; methods that do the same share a line, which is drawn as the first of them.
 
 ## The families
 

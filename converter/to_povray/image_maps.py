@@ -43,13 +43,16 @@ class Image:
     def ppm(self) -> bytes:
         """A binary PPM file, bottom row first: in POV-Ray y goes up, and our rows go down.
 
-        8 bits where they hold every texel, else 16.
+        8 bits where they hold every texel, else 16. The header ends with a line feed, but before a raster that begins
+        with the byte of a carriage return with one of those: POV-Ray takes the two together for the end of a line.
         """
         height, width, _ = self.texels.shape
         levels = 255 * self.texels
         most, kind = (255, "u1") if np.abs(levels - np.round(levels)).max() < 2**-10 else (65535, ">u2")
         raster = np.round(most * self.texels[::-1]).astype(kind)
-        return b"P6\n" + MARK + b"%d %d\n%d\n" % (width, height, most) + raster.tobytes()
+        data = raster.tobytes()
+        end = b"\r" if data.startswith(b"\r") else b"\n"
+        return b"P6\n" + MARK + b"%d %d\n%d" % (width, height, most) + end + data
 
 
 def image_maps(source: Texmap, transmitted: float, image: Image, boxes: Sequence[Box] | None) -> str:

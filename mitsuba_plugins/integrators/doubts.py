@@ -1,93 +1,27 @@
-"""Drawing in single precision first, and once more in double what that cannot decide.
+"""By how much the colour of a ray may be off, its doubt, where single precision is tried first.
 
-Bounds of all errors are computed along with the numbers (see :mod:`mitsuba_plugins.intersection.rounding`). From these
-follows by how much the colour of a ray may be off, its doubt: what is not known of a ray counts as the brightest colour
-that a ray can bring. A pixel whose doubts add up to `MOST_DOUBT` is undecided.
+Bounds of all errors are computed along with the numbers (see :mod:`mitsuba_plugins.intersection.rounding`). Doubts
+follow from these: what is not known of a ray counts as the brightest colour that a ray can bring. A pixel whose doubts
+add up to `MOST_DOUBT` is undecided, and drawn once more in double.
 
 Higham, Accuracy and Stability of Numerical Algorithms, 2nd edition, 2002, section 3.3: running error analysis.
 """
 
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
 from typing import Any
 
 import drjit as dr
-import numpy as np
 
 from mitsuba_plugins.arithmetic import quotient
 from mitsuba_plugins.integrators.tables import Finish
-from mitsuba_plugins.intersection.csg import Csg
-from mitsuba_plugins.intersection.geometry import Surface
 from mitsuba_plugins.intersection.rays import Hit, Ray, power
-from mitsuba_plugins.intersection.rounding import bounded, epsilon, least_spread
+from mitsuba_plugins.intersection.rounding import epsilon, least_spread
 
 MOST_DOUBT = 0.5 / 255
 """By how much a colour that is drawn in single precision alone may be off: half a level of 255."""
-LARGEST = 2.0**40
-"""Numbers up to which, and sizes down to one over which, scenes are drawn in single precision: it has their squares."""
 MOST_TURN = 0.25
 """Errors of directions beyond which bounds to first order, with some room, do not hold."""
 WEIGHT_ERROR = 2.0**-12
 """Relative, of a weight, after some hundred products."""
-
-
-class Precisions:
-    """What an integrator has laid out in double, which it uses, and in single precision, for a while."""
-
-    def __init__(self, integrator: Any, lay_out: Callable[[], dict[str, Any]]) -> None:
-        """Take what returns the integrator's attributes in single precision."""
-        self._integrator = integrator
-        self._bound = bounded(axes_are_exact(integrator.surfaces))
-        with self._bound():
-            self._single = lay_out()
-        self._double = {name: getattr(integrator, name) for name in self._single}
-        self._drawn = self._redrawn = 0
-
-    @property
-    def tries_single(self) -> bool:
-        """Whether single precision is worth a try: it has not left half of the pixels undecided."""
-        return 2 * self._redrawn <= self._drawn
-
-    @property
-    def share_in_double(self) -> float:
-        """Of the pixels drawn, those drawn in double."""
-        return self._redrawn / self._drawn if self._drawn > 0 else 1.0
-
-    @contextmanager
-    def single(self) -> Iterator[None]:
-        """Let kernels that are recorded meanwhile draw in single precision, and tell what that cannot decide."""
-        vars(self._integrator).update(self._single)
-        try:
-            with self._bound():
-                yield
-        finally:
-            vars(self._integrator).update(self._double)
-
-    def count(self, drawn: int, undecided: int) -> None:
-        """Note that so many pixels are drawn in single precision, and so many of them once more in double."""
-        self._drawn += drawn
-        self._redrawn += undecided
-
-    def forget(self) -> None:
-        """Let go of all but the counts."""
-        self._integrator, self._single, self._double = None, {}, {}
-
-
-def bounds_hold(surfaces: list[Surface]) -> bool:
-    """Whether the errors of single precision are bounded for all surfaces: not for csgs, nor where squares leave the
-    range of its numbers.
-    """
-    numbers = [abs(x) for surface in surfaces for row in surface.rows for x in row]
-    sizes = [ball[3] for surface in surfaces if (ball := surface.surrounding_ball) is not None]
-    in_range = max(numbers, default=0) < LARGEST and min(sizes, default=1) * LARGEST > 1
-    return in_range and not any(isinstance(surface.solid, Csg) for surface in surfaces)
-
-
-def axes_are_exact(surfaces: list[Surface]) -> bool:
-    """Whether single precision has all numbers of the planes along the axes: points of them have that coordinate."""
-    rows = np.array([row for surface in surfaces for row in surface.rows], dtype=np.float64).reshape(-1, 4)
-    along_axis = np.abs(rows[:, :3]).astype(np.float32).sum(axis=1) == 1
-    return bool(np.all(rows[along_axis].astype(np.float32) == rows[along_axis]))
 
 
 def light_doubt(

@@ -31,21 +31,6 @@ class Finish:
     versine: Any  # 1 - cos of half the angle of the cone in which rays are spread
 
 
-@dataclass
-class Illumination:
-    """What a light adds at a hit: n . l, the attenuation, the object in its way or NOTHING, the two terms (Color3), and
-    whether the shadow ray came close to a tie that nobody has decided; or, where all is bounded, by how much the terms
-    may be off (Float).
-    """
-
-    cosine: Any
-    attenuation: Any
-    blocker: Any
-    diffuse: Any
-    specular: Any
-    undecided: Any
-
-
 class Bsdfs:
     """The BSDFs that are nested in an integrator, by their names, in an object of a class that Dr.Jit does not know.
 
@@ -63,6 +48,11 @@ class Bsdfs:
                 raise ValueError(f"whitted: 'geometry' names a material '{name}', and no BSDF of that name is nested")
             if not hasattr(bsdf := self.by_name[name], "COEFFICIENTS"):
                 raise ValueError(f"whitted: every material is a 'phong' BSDF, '{name}' is a {type(bsdf).__name__}")
+
+    def transmitting(self, surfaces: list[Surface]) -> list[int]:
+        """The objects that rays are refracted into."""
+        glass = {name for name, bsdf in self.by_name.items() if bsdf.kt[0] > 0}
+        return [k for k, surface in enumerate(surfaces) if surface.material in glass]
 
 
 class Materials:

@@ -1,9 +1,10 @@
 """The computed scenes of the gallery."""
 
 import math
-from collections.abc import Callable, Iterator
+from collections.abc import Callable
 
-from making.text import SceneText, ball, csg, half_spaces, number, numbers
+from making.bodies import brilliant_planes, die, flake
+from making.text import SKY, SceneText, number, numbers
 from making.textures import Stops, mix, ramp, sky_at
 from making.vectors import (
     CUBE,
@@ -13,7 +14,6 @@ from making.vectors import (
     OCTAHEDRON,
     TETRAHEDRON,
     Color,
-    Plane,
     Vector,
     add,
     around,
@@ -29,35 +29,32 @@ from making.vectors import (
     unit,
 )
 
-SKY = "1 0 0 1 0 0 0"
-"""A finish that shines by itself, and takes neither light nor shadow."""
-
 
 def solids() -> SceneText:
     """The five regular solids."""
     s = SceneText(
         "The five regular solids: 4, 6, 8, 12 and 20 half-spaces, each resting on a face, which is sunk a little into\n"
         "the floor, so that no two faces coincide. Sixteen lamps side by side soften the shadows.",
-        (0, 3.3, -11.5),
-        (0, 1.0, 0.1),
-        33,
+        (0.0, 5.4, -10.6),
+        (0, 0.5, 0.1),
+        32.5,
     )
-    s.lamp((-60, 110, -60), (14, 0, 6), (4, 12, -9), (0.68, 0.65, 0.60), 4)
-    s.light((90, 70, -80), (0.20, 0.22, 0.28))
+    s.lamp((-70, 90, -20), (14, 0, 6), (4, 12, -9), (0.80, 0.74, 0.64), 4)
+    s.light((90, 70, -80), (0.14, 0.16, 0.24))
     sky = s.pigment(sky_at("mint", 400))
-    floor = s.solid((0.99, 0.94, 0.86))
-    colors = [(0.92, 0.27, 0.22), (0.96, 0.62, 0.14), (0.40, 0.66, 0.26), (0.12, 0.55, 0.66), (0.42, 0.32, 0.66)]
+    floor = s.solid((0.98, 0.90, 0.80))
+    colors = [(0.98, 0.22, 0.20), (1.00, 0.64, 0.10), (0.36, 0.76, 0.24), (0.08, 0.62, 0.80), (0.58, 0.36, 0.90)]
     shine = s.finish(SKY)
-    ground = s.finish("0.42 0.56 0 1 0.08 0 0", "a polished floor")
-    matte = s.finish("0.40 0.62 0.20 40 0.06 0 0")
+    ground = s.finish("0.40 0.58 0 1 0.08 0 0", "a polished floor")
+    matte = s.finish("0.34 0.70 0.20 40 0.06 0 0")
     s.sphere(sky, shine, (0, 0, 0), 400)
     s.polyhedron(floor, ground, [top(-0.2)])
     places = [
-        (TETRAHEDRON, (-2.6, -1.9), 0.52, 10),
-        (CUBE, (0.05, -2.2), 0.62, 28),
-        (OCTAHEDRON, (2.6, -1.6), 0.80, 15),
-        (DODECAHEDRON, (-1.6, 1.3), 1.10, 8),
-        (ICOSAHEDRON, (1.7, 1.7), 1.15, 40),
+        (TETRAHEDRON, (-2.2, -1.55), 0.56, 10),
+        (CUBE, (0.05, -2.1), 0.68, 28),
+        (OCTAHEDRON, (2.3, -1.3), 0.84, 15),
+        (DODECAHEDRON, (-1.5, 1.5), 1.10, 8),
+        (ICOSAHEDRON, (1.6, 1.7), 1.15, 40),
     ]
     for color, (normals, (x, z), inradius, degrees) in zip(colors, places, strict=True):
         center = (x, -0.2 + inradius - 0.01, z)
@@ -162,37 +159,6 @@ def endless() -> SceneText:
     return s
 
 
-def brilliant_planes(center: Vector, size: float, pose: Callable[[Vector], Vector]) -> list[Plane]:
-    """A round brilliant of the given girdle radius: table, 8 star, 8 bezel and 16 upper girdle facets, a girdle of 16,
-    16 lower girdle and 8 pavilion main facets. `pose` turns its normals.
-    """
-
-    def facet(azimuth: float, slope: float, through: tuple[float, float]) -> Plane:
-        """A facet whose normal is `slope` degrees from the axis (beyond 90: it looks down), through a point (r, y)."""
-        normal = turned((math.sin(math.radians(slope)), math.cos(math.radians(slope)), 0), 1, azimuth)
-        offset = math.sin(math.radians(slope)) * through[0] + math.cos(math.radians(slope)) * through[1]
-        return (*normal, offset)
-
-    edge = math.cos(math.radians(11.25))  # the girdle has 16 sides, and vertices at radius 1
-    girdle, table_radius = 0.03, 0.56
-    table = girdle + (1 - table_radius) * math.tan(math.radians(34.5))
-    facets = [facet(0, 0, (0, table))]
-    for k in range(8):
-        facets.append(facet(45 * k, 34.5, (1, girdle)))
-        facets.append(facet(45 * k + 22.5, 22, (table_radius * math.cos(math.radians(22.5)), table)))
-        facets.append(facet(45 * k, 180 - 40.8, (1, -girdle)))
-    for k in range(16):
-        azimuth = 22.5 * k + 11.25
-        facets.append(facet(azimuth, 41, (edge, girdle)))
-        facets.append(facet(azimuth, 90, (edge, 0)))
-        facets.append(facet(azimuth, 180 - 42.3, (edge, -girdle)))
-    planes = []
-    for *normal, offset in facets:
-        n = pose((normal[0], normal[1], normal[2]))
-        planes.append((*n, -dot(n, center) - size * offset))
-    return planes
-
-
 def brilliant() -> SceneText:
     """A cut diamond and two coloured stones."""
     s = SceneText(
@@ -226,14 +192,22 @@ def brilliant() -> SceneText:
     return s
 
 
+def thrown(lamp: Vector, mirror: Vector, normal: Vector, z: float) -> tuple[Vector, float] | None:
+    """Where a small mirror throws a lamp's light on the plane at a z before it, and how long the way there is; None if
+    it does not, or nearly along itself or along the plane.
+    """
+    ray = unit(add(mirror, scale(lamp, -1)))
+    facing = -dot(ray, normal)
+    out = add(ray, scale(normal, 2 * facing))
+    if facing < 0.2 or out[2] < 0.3:
+        return None
+    way = (z - mirror[2]) / out[2]
+    return add(mirror, scale(out, way)), way
+
+
 def mirror_ball() -> SceneText:
     """A ball of hundreds of mirrors."""
-    s = SceneText("", (0, 0.4, -9), (0, 0.25, 0), 34)
-    rainbow = s.pigment("texmap rainbow1.ppm\n0.0024 0.0017 0 0.62\n0 0 0 0")
-    silver = s.solid((0.90, 0.92, 0.95))
-    shine = s.finish("0.85 0 0 1 0 0 0")
-    mirror = s.finish("0.02 0.12 0.6 60 0.86 0 0")
-    s.sphere(rainbow, shine, (0, 0, 0), 200)
+    center, inradius = (0.0, 3.25, 0.0), 1.9
     normals: list[Vector] = []
     rings = 19
     for ring in range(rings):
@@ -241,13 +215,55 @@ def mirror_ball() -> SceneText:
         count = max(4, round(2 * rings * math.sin(latitude)))
         for k in range(count):
             normals.append(turned((math.sin(latitude), math.cos(latitude), 0), 1, 360 * k / count + 3))
-    s.comment = f"A mirror ball: one polyhedron of {len(normals)} planes, all at the same distance from its centre."
-    s.polyhedron(silver, mirror, around(normals, (0, 0.2, 0), 1.9))
-    s.polyhedron(
-        s.solid((0.30, 0.26, 0.40)), s.finish("0.6 0.5 0.4 30 0 0 0"), [*column(6, 0, 0, 0.04, 10), bottom(2.05)]
+    s = SceneText(
+        f"A mirror ball: one polyhedron of {len(normals)} planes, all at one distance from its centre. A spot glows\n"
+        "on the wall wherever one of its mirrors throws the light of one of four lamps, which are not drawn.",
+        (0, 1.15, -9.2),
+        (0, 2.72, 0),
+        37,
     )
-    s.light((-6, 9, -8), (0.45, 0.43, 0.40))
-    s.light((8, 4, -8), (0.20, 0.22, 0.28))
+    s.light((0, 11, -4), (0.42, 0.40, 0.38), (0.5, 0.03, 0.004))
+    for position, color, attenuation in (
+        ((-5.6, 4.6, 5.2), (1.00, 0.10, 0.50), (0.45, 0.10, 0.08)),
+        ((5.6, 4.6, 5.2), (0.05, 0.50, 1.00), (0.45, 0.10, 0.08)),
+        ((0, 0.9, 5.6), (0.50, 0.12, 0.95), (0.7, 0.20, 0.12)),
+    ):
+        s.light(position, color, attenuation)  # close to the wall, each a pool of its colour on it
+    hall = s.pigment("texmap textures/spotlights.ppm\n0.0584 0 0 0.43\n0 -0.0584 0 0.11")
+    tiles = s.pigment("texmap textures/dance_floor.ppm\n0.1 0 0 0.5\n0 0 0.1 0")
+    plaster = s.solid((0.70, 0.66, 0.80))
+    silver = s.solid((0.90, 0.92, 0.95))
+    brass = s.solid((0.86, 0.66, 0.36))
+    cord = s.solid((0.30, 0.26, 0.40))
+    shine = s.finish(SKY)
+    mirror = s.finish("0.02 0.12 0.6 60 0.86 0 0")
+    matte = s.finish("0.04 0.60 0 1 0 0 0")
+    glowing = s.finish("0.80 0.10 0 1 0.14 0 0", "tiles of glass over lamps")
+    metal = s.finish("0.12 0.30 0.6 40 0.2 0 0")
+    wall = 7.0
+    s.sphere(hall, shine, (0, 0, 0), 40)
+    s.polyhedron(tiles, glowing, [top(0)])
+    s.polyhedron(plaster, matte, [(0, 0, -1, wall)])
+    s.polyhedron(silver, mirror, around(normals, center, inradius))
+    s.polyhedron(brass, metal, [*column(12, 0, 0, 0.30), bottom(5.0), top(5.28)])
+    s.polyhedron(cord, matte, [*column(6, 0, 0, 0.018, 10), bottom(5.2)])
+    lamps: list[tuple[Vector, Color]] = [
+        ((-9, 6, 3), (1.00, 0.45, 0.75)),
+        ((9, 6, 3), (0.45, 0.80, 1.00)),
+        ((-5, 10, 1), (1.00, 0.85, 0.55)),
+        ((5, 10, 1), (0.75, 0.60, 1.00)),
+    ]
+    for lamp, color in lamps:
+        pigment = s.solid(color)
+        for n in normals:
+            found = thrown(lamp, add(center, scale(n, inradius)), n, wall)
+            if found is None:
+                continue
+            (x, y, _), way = found
+            if abs(x) < 7.2 and 0.3 < y < 8:  # in the picture
+                radius = 0.035 + 0.005 * way
+                # A ball that looks out of the wall by a disc of that radius.
+                s.sphere(pigment, shine, (x, y, wall + math.sqrt(0.25 - radius**2)), 0.5)
     return s
 
 
@@ -381,45 +397,22 @@ def checker() -> SceneText:
     return s
 
 
-def flake(
-    center: Vector, radius: float, up: Vector, generations: int, generation: int = 0
-) -> Iterator[tuple[int, Vector, float]]:
-    """Generation, centre and radius of each ball of a sphereflake: a ball, and on it, about `up`, nine smaller flakes.
-
-    Six stand around its equator, three on its northern half, each a third of its size. So does `balls` of Haines,
-    "A Proposal for Standard Graphics Environments", IEEE Computer Graphics and Applications 7(11), 1987.
-    """
-    yield generation, center, radius
-    if generation + 1 == generations:
-        return
-    tilt = math.degrees(math.acos(up[1]))
-    azimuth = math.degrees(math.atan2(-up[2], up[0]))
-    for count, latitude, start in ((6, 0.0, 0.0), (3, 54.735610, 30.0)):
-        for k in range(count):
-            direction = turned(turned((1, 0, 0), 2, latitude), 1, start + 360 * k / count)
-            # From about the y axis to about `up`.
-            direction = turned(turned(direction, 2, -tilt), 1, azimuth)
-            apart = scale(direction, radius * 4 / 3)
-            yield from flake(add(center, apart), radius / 3, direction, generations, generation + 1)
-
-
 def sphereflake() -> SceneText:
     """Balls on balls."""
     s = SceneText(
         "Eric Haines's sphereflake: every ball carries nine of a third of its size, in three generations: 91 mirrors.",
-        (-2.9, 1.7, -5.2),
-        (0, 0.55, 0),
-        32,
+        (-2.7, 3.1, -4.6),
+        (0.0, 0.27, 0),
+        38.5,
     )
-    s.light((-40, 60, -40), (0.55, 0.50, 0.45))
-    s.light((8, 6, -8), (0.22, 0.24, 0.30))
-    sky = s.pigment(sky_at("sunset", 800))
-    floor = s.solid((0.72, 0.46, 0.54))
+    s.light((-30, 60, -30), (0.74, 0.69, 0.60))
+    s.light((8, 6, -8), (0.16, 0.18, 0.26))
+    sky = s.pigment(sky_at("mint", 800))
+    floor = s.solid((0.04, 0.31, 0.36))
     shine = s.finish(SKY)
-    ground = s.finish("0.45 0.55 0 1 0.15 0 0")
-    mirror = s.finish("0.14 0.32 0.6 80 0.56 0 0")
-    colors = [(0.98, 0.74, 0.40), (0.94, 0.46, 0.40), (0.66, 0.42, 0.72), (0.40, 0.40, 0.75)]
-    pigments = [s.solid(color) for color in colors[:3]]
+    ground = s.finish("0.47 0.58 0 1 0.10 0 0")
+    mirror = s.finish("0.13 0.36 0.7 120 0.56 0 0")
+    pigments = [s.solid(color) for color in ((1.00, 0.66, 0.16), (0.98, 0.26, 0.22), (0.30, 0.70, 0.85))]
     s.sphere(sky, shine, (0, 0, 0), 800)
     s.polyhedron(floor, ground, [top(-0.72)])
 
@@ -495,31 +488,6 @@ def dice() -> SceneText:
     s.body(red, lacquer, die((1.6, 1, 1.2), -18))
     s.body(clear, glass, die((0.35, 1.001, -2.1), 9))
     return s
-
-
-EYES: dict[int, tuple[tuple[float, float], ...]] = {
-    1: ((0, 0),),
-    2: ((-1, -1), (1, 1)),
-    3: ((-1, -1), (0, 0), (1, 1)),
-    4: ((-1, -1), (-1, 1), (1, -1), (1, 1)),
-    5: ((-1, -1), (-1, 1), (0, 0), (1, -1), (1, 1)),
-    6: ((-1, -1), (-1, 0), (-1, 1), (1, -1), (1, 0), (1, 1)),
-}
-"""Where a die's eyes are on each of its faces."""
-
-
-def die(center: Vector, degrees: float) -> str:
-    """A die, its edges 2 long, turned about the vertical; opposite faces have seven eyes."""
-    x, y, z = (turned(axis, 1, degrees) for axis in ((1, 0, 0), (0, 1, 0), (0, 0, 1)))
-    faces: list[Plane] = []
-    eyes = []
-    for (up, right, ahead), count in zip(((x, y, z), (y, z, x), (z, x, y)), (3, 5, 1), strict=True):
-        for normal, number_of_eyes in ((up, count), (scale(up, -1), 7 - count)):
-            faces.append((*normal, -dot(normal, center) - 1))
-            for p, q in EYES[number_of_eyes]:
-                middle = add(add(scale(normal, 1.06), scale(right, 0.5 * p)), scale(ahead, 0.5 * q))
-                eyes.append(f"- {ball(add(center, middle), 0.21)}")
-    return csg(f"+ {half_spaces(faces)}", f"& {ball(center, 1.46)}", *eyes)
 
 
 SCENES: dict[str, Callable[[], SceneText]] = {

@@ -3,10 +3,10 @@
 import math
 from collections.abc import Callable
 
-from making.gallery import SKY
-from making.text import SceneText, ball, csg, half_spaces, number, numbers, quadric
+from making.bodies import cone, cylinder, ellipsoid, rod, turned_box
+from making.text import SKY, SceneText, ball, csg, half_spaces, number, numbers
 from making.textures import mix, sky_at
-from making.vectors import GOLDEN, Color, Plane, Vector, add, bottom, box, dot, scale, top, turned, unit
+from making.vectors import GOLDEN, Color, Vector, add, bottom, box, dot, scale, top, turned, unit
 
 
 class SampledScene(SceneText):
@@ -30,46 +30,6 @@ class SampledScene(SceneText):
     def moves(self, displacement: Vector) -> None:
         """Let the body that was added last move while the shutter is open."""
         self._objects[-1] += f" move {numbers(displacement)}"
-
-
-# ---- Bodies of revolution ------------------------------------------------------------------------------------------
-
-
-def ellipsoid(center: Vector, radii: Vector) -> str:
-    """An ellipsoid along the axes."""
-    (x, y, z), (a, b, c) = center, (1 / r**2 for r in radii)
-    constant = a * x * x + b * y * y + c * z * z - 1
-    return quadric((a, b, c, 0, 0, 0, -2 * a * x, -2 * b * y, -2 * c * z, constant))
-
-
-def cylinder(x: float, z: float, radius: float, low: float, high: float) -> str:
-    """An upright cylinder."""
-    side = quadric((1, 0, 1, 0, 0, 0, -2 * x, 0, -2 * z, x * x + z * z - radius**2))
-    return csg(f"+ {side}", f"& {half_spaces([bottom(low), top(high)])}")
-
-
-def cone(x: float, z: float, ends: tuple[float, float], radii: tuple[float, float]) -> str:
-    """A piece of an upright cone between two heights, with its radii there."""
-    (low, high), (first, last) = ends, radii
-    slope = (last - first) / (high - low)
-    apex = low - first / slope
-    k = slope**2
-    side = quadric((1, -k, 1, 0, 0, 0, -2 * x, 2 * k * apex, -2 * z, x * x + z * z - k * apex * apex))
-    return csg(f"+ {side}", f"& {half_spaces([bottom(low), top(high)])}")
-
-
-def rod(start: Vector, end: Vector, radius: float) -> str:
-    """A round rod from one point to another."""
-    along = unit(add(end, scale(start, -1)))
-    (x, y, z), (a, b, c), height = start, along, dot(start, along)
-    squares = (1 - a * a, 1 - b * b, 1 - c * c, -2 * a * b, -2 * a * c, -2 * b * c)
-    linear = (2 * (a * height - x), 2 * (b * height - y), 2 * (c * height - z))
-    side = quadric((*squares, *linear, dot(start, start) - height**2 - radius**2))
-    ends = half_spaces([(-a, -b, -c, height), (a, b, c, -dot(end, along))])
-    return csg(f"+ {side}", f"& {ends}")
-
-
-# ---- Scenes --------------------------------------------------------------------------------------------------------
 
 
 def evening() -> SampledScene:
@@ -146,18 +106,6 @@ def evening() -> SampledScene:
     s.body(ochre, matte, ellipsoid((1.28, 0.26, -0.25), (0.27, 0.26, 0.34)))
     s.sphere(plum, glaze, (-0.62, 0.25, -0.35), 0.25)
     return s
-
-
-def turned_box(center: Vector, half: Vector, degrees: float) -> list[Plane]:
-    """A block about a centre, turned about the vertical."""
-    planes = []
-    for axis in range(3):
-        for sign in (1, -1):
-            normal = [0.0, 0.0, 0.0]
-            normal[axis] = sign
-            n = turned((normal[0], normal[1], normal[2]), 1, degrees)
-            planes.append((*n, -sum(a * b for a, b in zip(n, center, strict=True)) - half[axis]))
-    return planes
 
 
 def frosted() -> SampledScene:

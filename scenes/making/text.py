@@ -16,6 +16,10 @@ def numbers(values: Iterable[float]) -> str:
     return " ".join(number(x) for x in values)
 
 
+SKY = "1 0 0 1 0 0 0"
+"""A finish that shines by itself, and takes neither light nor shadow."""
+
+
 class SceneText:
     """A scene that is being written. Pigments and finishes are added before they are used, and known by their index."""
 

@@ -175,6 +175,42 @@ def softboxes() -> bytes:
     return ppm([color(column, row) for column in range(size)] for row in range(size))
 
 
+def dance_floor() -> bytes:
+    """A floor of eight by eight tiles of coloured light, with dark joints."""
+    tiles, texels = 8, 12
+    colors = [
+        (0.95, 0.16, 0.52),
+        (0.10, 0.62, 0.95),
+        (0.46, 0.18, 0.90),
+        (0.98, 0.62, 0.12),
+        (0.08, 0.75, 0.62),
+        (0.16, 0.16, 0.42),
+    ]
+
+    def color(column: int, row: int) -> Color:
+        if column % texels == 0 or row % texels == 0:
+            return (0.03, 0.03, 0.05)
+        x, z = column // texels, row // texels
+        return colors[(2 * x + 3 * z + x * z) % len(colors)]
+
+    return ppm([color(column, row) for column in range(tiles * texels)] for row in range(tiles * texels))
+
+
+def spotlights() -> bytes:
+    """Lamps of a dark hall, four by four: white in the middle."""
+    lamps, texels = 4, 24
+    colors = [(1.00, 0.20, 0.55), (0.15, 0.65, 1.00), (1.00, 0.70, 0.20), (0.60, 0.30, 1.00), (0.20, 0.90, 0.70)]
+
+    def color(column: int, row: int) -> Color:
+        i, j = column // texels, row // texels
+        x, y = (2 * (c % texels + 0.5) / texels - 1 for c in (column, row))
+        tint = colors[(2 * i + 3 * j + i * j) % len(colors)]
+        r = math.hypot(x, y)
+        return (1, 1, 1) if r < 0.34 else tint if r < 0.72 else (0.05, 0.05, 0.11)
+
+    return ppm([color(column, row) for column in range(lamps * texels)] for row in range(lamps * texels))
+
+
 def azulejo() -> bytes:
     """A glazed tile: blue on white, the same turned and mirrored, so that tiles join into stars."""
     size = 96
@@ -275,8 +311,10 @@ TEXTURES: dict[str, Callable[[], bytes]] = {
     "ladder/letter.ppm": letter,
     "rainbow1.ppm": rainbow1,
     "textures/azulejo.ppm": azulejo,
+    "textures/dance_floor.ppm": dance_floor,
     "textures/pool.ppm": pool,
     "textures/room.ppm": room,
     "textures/skies.ppm": skies,
     "textures/softboxes.ppm": softboxes,
+    "textures/spotlights.ppm": spotlights,
 }

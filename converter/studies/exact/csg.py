@@ -1,12 +1,13 @@
 """Where a ray meets a csg, by the definition: whether points half-way between crossings of its surfaces are inside."""
 
-from collections.abc import Callable, Iterator, Sequence
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from functools import cmp_to_key
 from itertools import pairwise
 from typing import Literal, NamedTuple
 
-from converter.studies.exact.arithmetic import Arithmetic, Number
+from converter.studies.exact.arithmetic import Number
+from converter.studies.exact.ties import Decisions
 
 Along = tuple[Number, Number, Number]
 """The numbers a, b and c of a t^2 + 2 b t + c, which is a surface's value along a ray, negative inside."""
@@ -37,19 +38,19 @@ class Met(NamedTuple):
     tied: bool
 
 
-def first_met(node: Node, surfaces: Sequence[Along], numbers: Arithmetic, tangent: Callable[[], None]) -> Met | None:
-    """The first change beyond the ray's start; `tangent` is called where the ray touches a surface."""
+def first_met(node: Node, surfaces: Sequence[Along], decide: Decisions) -> Met | None:
+    """The first change beyond the ray's start."""
 
     def order(one: tuple[Number, int], other: tuple[Number, int]) -> int:
-        return numbers.sign(one[0] - other[0])
+        return decide.sign(one[0] - other[0])
 
     crossings: list[tuple[Number, int]] = [
-        (t, k) for k, along in enumerate(surfaces) for t in _roots(along, numbers, tangent) if numbers.sign(t) > 0
+        (t, k) for k, along in enumerate(surfaces) for t in _roots(along, decide) if decide.sign(t) > 0
     ]
     crossings.sort(key=cmp_to_key(order))
     groups: list[list[tuple[Number, int]]] = []
     for crossing in crossings:
-        if groups and numbers.sign(crossing[0] - groups[-1][0][0]) == 0:
+        if groups and decide.sign(crossing[0] - groups[-1][0][0]) == 0:
             groups[-1].append(crossing)
         else:
             groups.append([crossing])
@@ -57,36 +58,36 @@ def first_met(node: Node, surfaces: Sequence[Along], numbers: Arithmetic, tangen
         return None
     distances = [group[0][0] for group in groups]
     middles = [(s + t) / 2 for s, t in pairwise([0 * distances[0], *distances])] + [2 * distances[-1]]
-    values = (_contains(node, surfaces, t, numbers) for t in middles)
+    values = (_contains(node, surfaces, t, decide) for t in middles)
     for group, (before, after) in zip(groups, pairwise(values), strict=True):
         if before != after:
             return Met(*group[0], before, len(group) > 1)
     return None
 
 
-def _roots(along: Along, numbers: Arithmetic, tangent: Callable[[], None]) -> Iterator[Number]:
+def _roots(along: Along, decide: Decisions) -> Iterator[Number]:
     a, b, c = along
-    if numbers.sign(a) == 0:
-        if numbers.sign(b):
+    if decide.sign(a) == 0:
+        if decide.sign(b):
             yield -c / (2 * b)
-    elif numbers.sign(c) == 0:  # the other root is where the ray starts
+    elif decide.sign(c) == 0:  # the other root is where the ray starts
         yield -2 * b / a
     else:
         discriminant = b * b - a * c
-        sign = numbers.sign(discriminant)
+        sign = decide.sign(discriminant)
         if sign > 0:
-            root = numbers.root(discriminant)
+            root = decide.root(discriminant)
             yield (-b - root) / a
             yield (-b + root) / a
-        elif sign == 0 and numbers.sign(a) * numbers.sign(b) < 0:
-            tangent()
+        elif sign == 0 and decide.sign(a) * decide.sign(b) < 0:
+            decide.note("tangent")
 
 
-def _contains(node: Leaf | Node, surfaces: Sequence[Along], t: Number, numbers: Arithmetic) -> bool:
+def _contains(node: Leaf | Node, surfaces: Sequence[Along], t: Number, decide: Decisions) -> bool:
     if isinstance(node, Leaf):
-        return all(numbers.sign((a * t + 2 * b) * t + c) <= 0 for a, b, c in map(surfaces.__getitem__, node.surfaces))
+        return all(decide.sign((a * t + 2 * b) * t + c) <= 0 for a, b, c in map(surfaces.__getitem__, node.surfaces))
     whole = False
     for operation, operand in node.steps:
         if whole != (operation == "+"):  # else it changes nothing
-            whole = _contains(operand, surfaces, t, numbers) == (operation != "-")
+            whole = _contains(operand, surfaces, t, decide) == (operation != "-")
     return whole
