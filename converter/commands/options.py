@@ -9,10 +9,8 @@ from typing import NoReturn
 from converter.commands.exits import UsageError
 from converter.scene.depth import MAX_DEPTH
 from converter.scene.model import Color
-from converter.scene.settings import MOST_THREADS, SAMPLES, Settings
+from converter.scene.settings import MAX_SAMPLES, MAX_SEED, MAX_SIZE, MOST_THREADS, SAMPLES, Settings
 
-MAX_SIZE = 1_000_000
-MAX_SAMPLES = 65536
 DEFAULTS = Settings()
 
 
@@ -111,7 +109,7 @@ def _depth(text: str) -> int:
 
 
 def _seed(text: str) -> int:
-    return whole(text, 0, 2**32 - 1)
+    return whole(text, 0, MAX_SEED)
 
 
 def _threads(text: str) -> int:

@@ -4,8 +4,8 @@ import argparse
 from dataclasses import replace
 
 from converter.commands.exits import UsageError
-from converter.commands.options import MAX_SIZE, whole
-from converter.scene.settings import Crop, Settings
+from converter.commands.options import whole
+from converter.scene.settings import MAX_SIZE, Crop, Settings
 
 
 def add_part_options(parser: argparse.ArgumentParser) -> None:
