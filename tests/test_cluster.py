@@ -6,6 +6,7 @@ import threading
 import time
 from argparse import Namespace
 from dataclasses import replace
+from importlib.metadata import PackageNotFoundError, version
 from itertools import pairwise
 from pathlib import Path
 
@@ -141,6 +142,30 @@ def test_workers_may_come_later(whitted, tmp_path, monkeypatch):
     assert "there are no workers yet; those that come draw" in err
     assert len(files(tmp_path)) == 30
     assert (counted[0], counted[-1]) == ((1, 3), (2, 6))
+
+
+@pytest.mark.parametrize(
+    ("answer", "message"),
+    [
+        (PackageNotFoundError("whitted"), "does not have this package: pip install 'whitted[cluster]'"),
+        ("0.0.1", "has whitted 0.0.1, and this is "),
+    ],
+)
+def test_workers_with_another_package(whitted, scheduler, tmp_path, monkeypatch, answer, message):
+    """They would die of what is sent to them, or draw other pictures."""
+    run, asked = Client.run, []
+
+    def answered(client, function, *words, **options):
+        asked.append(run(client, function, *words, **options))
+        return dict.fromkeys(asked[-1], answer)
+
+    monkeypatch.setattr(Client, "run", answered)
+    words = (SCENES / "films/orbit.in", tmp_path / "{frame}.ppm", 8, 6, "--frames", "2", *NATIVE)
+    status, _, err = whitted("animate", *words, "--scheduler", scheduler)
+    assert status == 2
+    assert err.startswith("whitted animate: the worker at tcp://")
+    assert message in err
+    assert set(asked[0].values()) == {version("whitted")}
 
 
 def test_a_scheduler_that_goes_loses_no_picture(whitted, tmp_path, monkeypatch):

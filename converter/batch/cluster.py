@@ -10,10 +10,12 @@ import math
 import signal
 import threading
 import time
+import warnings
 from collections.abc import Callable, Iterable, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from hashlib import sha256
+from importlib import metadata
 from importlib.util import find_spec
 from itertools import count as counted
 from pathlib import Path
@@ -77,7 +79,8 @@ def cluster(workers: int | None, scheduler: str | None, quiet: bool) -> Iterator
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     if scheduler is not None:
         try:
-            client = Client(scheduler, timeout=PATIENCE)
+            with warnings.catch_warnings(action="ignore"):  # of other versions of what does not matter
+                client = Client(scheduler, timeout=PATIENCE)
         except Exception as error:  # Dask has many for addresses that are none, or need what is not set up
             raise ClusterError(f"--scheduler: nothing answers at {scheduler!r}: {error}") from error
         with client:
@@ -203,6 +206,7 @@ class _Sending:
         self._client, self._threads = found.client, found.threads
         self._keys = counted()
         self.workers = 1
+        self._known: set[str] = set()
         self._job: tuple[Job | None, Any, list[Any]] = (None, None, [])
         self._textures: dict[str, Any] = {}
         self._counted = -math.inf
@@ -211,11 +215,19 @@ class _Sending:
         self._least = 2 * self.workers if count < self.workers else 1
 
     def count_workers(self) -> None:
-        """See how many workers there are, if that was some time ago: of a cluster they come and go."""
+        """See how many workers there are, if that was some time ago: of a cluster they come and go.
+
+        Raises:
+            ClusterError: one does not have this package, or another version of it.
+
+        """
         if time.monotonic() - self._counted < COUNTING_SECONDS:
             return
         with suppress(OSError):  # the scheduler is gone, as is told elsewhere
-            self.workers = max(1, len(self._client.nthreads()))
+            found = set(self._client.nthreads())
+            _check_versions(self._client, found - self._known)
+            self._known |= found
+            self.workers = max(1, len(found))
         self.room = AHEAD * self.workers
         self._counted = time.monotonic()
 
@@ -247,6 +259,23 @@ class _Sending:
         if name not in self._textures:
             self._textures[name] = self._client.submit(same, Blob(name, data), key=f"texture-{name}", pure=True)
         return self._client.submit(_named, str(file), self._textures[name], pure=False)
+
+
+def _check_versions(client: Any, workers: set[str]) -> None:
+    from converter.commands.version import version
+
+    ours = version()
+    if not workers or not ours[0].isdigit():  # which of a source folder is not known
+        return
+    # A function of ours could not travel to a worker that lacks the package.
+    answers = client.run(metadata.version, "whitted", workers=sorted(workers), on_error="return")
+    for address, found in answers.items():
+        if isinstance(found, metadata.PackageNotFoundError):
+            raise ClusterError(f"the worker at {address} does not have this package: pip install 'whitted[cluster]'")
+        if isinstance(found, str) and found != ours:
+            raise ClusterError(
+                f"the worker at {address} has whitted {found}, and this is {ours}: they must be the same"
+            )
 
 
 def _named(file: str, blob: Blob) -> tuple[str, Blob]:
