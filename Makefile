@@ -8,6 +8,7 @@
 # make mutants  plant mistakes, and tell which of them the tests do not notice
 # make fuzz     look for inputs that fail, for SECONDS; what it finds is left in out/fuzz
 # make wheel    build the sdist and, from it, a wheel, and try that in an environment of its own
+# make workflows  check the files of .github/workflows by actionlint, which Go fetches
 # make docs     build the pages of docs/ as a site, with every link checked
 # make sanitize run the tests of the native tracer with what finds bad memory and undefined behaviour
 # make coverage run TESTS, all by default, and tell which lines of Python and C++ they do not reach
@@ -31,7 +32,7 @@ BIN := .venv/bin
 SOURCES := pyproject.toml CMakeLists.txt $(wildcard native_tracer/src/*.* native_tracer/src/*/* student_tracer/src/* certified_tracer/src/*)
 CPP := $(wildcard native_tracer/src/*/*.cpp native_tracer/src/*/*.h student_tracer/src/*.cpp student_tracer/src/*.h certified_tracer/src/*.cpp certified_tracer/src/*.h)
 
-.PHONY: render test check figures format films stability mutants fuzz wheel docs sanitize coverage profile clean
+.PHONY: render test check figures format films stability mutants fuzz wheel workflows docs sanitize coverage profile clean
 .DELETE_ON_ERROR:
 
 # Status 1 of the comparison says that the pictures differ, which is no failure to render.
@@ -90,6 +91,9 @@ wheel: .venv/.packager
 	$(BIN)/python -m venv build/wheel/venv
 	build/wheel/venv/bin/python -m pip install --quiet --disable-pip-version-check dist/*.whl
 	cd build/wheel && venv/bin/python $(CURDIR)/packaging/check_wheel.py $(CURDIR)/scenes
+
+workflows:
+	go run github.com/rhysd/actionlint/cmd/actionlint@v1.7.12
 
 docs: .venv/.checkers
 	$(site)

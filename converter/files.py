@@ -21,6 +21,42 @@ def check_apart(target: Path, sources: Iterable[Path]) -> None:
             raise FileExistsError(errno.EEXIST, "this is read, and the result would replace it", str(target))
 
 
+@contextmanager
+def only_one(folder: Path) -> Iterator[bool]:
+    """Whether no other process is within such a block for this folder, which is there; other machines may be.
+
+    True where the folder's file system knows no locks.
+    """
+    import fcntl
+
+    opened = os.open(folder, os.O_RDONLY)
+    try:
+        try:
+            fcntl.flock(opened, fcntl.LOCK_EX | fcntl.LOCK_NB)
+            # Another may have removed it meanwhile.
+            alone = folder.exists() and os.path.samestat(os.fstat(opened), folder.stat())
+        except BlockingIOError:
+            alone = False
+        except OSError:
+            alone = True
+        yield alone
+    finally:
+        os.close(opened)
+
+
+def make_folder(folder: Path) -> None:
+    """Make a folder with those that it is in, where they are missing.
+
+    Raises:
+        OSError: it cannot be made.
+
+    """
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+    except FileExistsError:
+        raise NotADirectoryError(errno.ENOTDIR, "this is a file, and a folder is needed", str(folder)) from None
+
+
 def check_target(path: Path, sources: Iterable[Path] = ()) -> None:
     """See that a file can be written there, so that no one waits for a result that cannot be saved.
 
@@ -79,7 +115,7 @@ def replacing(path: Path, ending: str | None = None) -> Iterator[Path]:
     """A new file to write into, which takes the place of `path` when the block ends well, and goes when not.
 
     Its ending is the given one, or that of `path`. A link stays, and what it points to is replaced. Into what is
-    special the new one is copied.
+    special the new one is copied. An OSError of the block that tells no file, or this one, tells `path`.
     """
     ending = path.suffix if ending is None else ending
     if is_special(path):
@@ -95,6 +131,11 @@ def replacing(path: Path, ending: str | None = None) -> Iterator[Path]:
     try:
         yield temporary
         temporary.replace(target)
+    except OSError as error:
+        # Writing, unlike opening, does not say what; and of the other name nobody knows.
+        if error.errno is None or error.filename not in (None, str(temporary)):
+            raise
+        raise OSError(error.errno, error.strerror, str(path)) from error
     finally:
         with suppress(OSError):  # it was never made, or is in its place
             temporary.unlink()

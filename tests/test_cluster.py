@@ -6,6 +6,7 @@ import threading
 import time
 from argparse import Namespace
 from dataclasses import replace
+from importlib.metadata import PackageNotFoundError, version
 from itertools import pairwise
 from pathlib import Path
 
@@ -122,6 +123,51 @@ def test_killed_workers_cost_time_only(scheduler):
     assert all(found[k] == draw_picture(wanted[k].job, Picture()).data for k in (0, 19, 21, 59))
 
 
+def test_workers_may_come_later(whitted, tmp_path, monkeypatch):
+    """They are waited for, and each that comes has something to do."""
+    monkeypatch.setattr(dask, "COUNTING_SECONDS", 0.0)
+    count_workers, counted = dask._Sending.count_workers, []
+    words = ("animate", SCENES / "films/orbit.in", tmp_path / "{frame}.ppm", 40, 30, "--frames", "30", *NATIVE[:2])
+    with LocalCluster(n_workers=0, processes=False, dashboard_address=":0", silence_logs=50) as local:
+
+        def count(sending):
+            count_workers(sending)
+            if not counted:
+                local.scale(2)
+            counted.append((sending.workers, sending.room))
+
+        monkeypatch.setattr(dask._Sending, "count_workers", count)
+        status, _, err = whitted(*words, "--scheduler", local.scheduler_address)
+    assert status == 0
+    assert "there are no workers yet; those that come draw" in err
+    assert len(files(tmp_path)) == 30
+    assert (counted[0], counted[-1]) == ((1, 3), (2, 6))
+
+
+@pytest.mark.parametrize(
+    ("answer", "message"),
+    [
+        (PackageNotFoundError("whitted"), "does not have this package: pip install 'whitted[cluster]'"),
+        ("0.0.1", "has whitted 0.0.1, and this is "),
+    ],
+)
+def test_workers_with_another_package(whitted, scheduler, tmp_path, monkeypatch, answer, message):
+    """They would die of what is sent to them, or draw other pictures."""
+    run, asked = Client.run, []
+
+    def answered(client, function, *words, **options):
+        asked.append(run(client, function, *words, **options))
+        return dict.fromkeys(asked[-1], answer)
+
+    monkeypatch.setattr(Client, "run", answered)
+    words = (SCENES / "films/orbit.in", tmp_path / "{frame}.ppm", 8, 6, "--frames", "2", *NATIVE)
+    status, _, err = whitted("animate", *words, "--scheduler", scheduler)
+    assert status == 2
+    assert err.startswith("whitted animate: the worker at tcp://")
+    assert message in err
+    assert set(asked[0].values()) == {version("whitted")}
+
+
 def test_a_scheduler_that_goes_loses_no_picture(whitted, tmp_path, monkeypatch):
     """What is drawn is there, and the same command goes on from it."""
     monkeypatch.setattr(dask, "PATIENCE", 0.5)
@@ -156,8 +202,9 @@ def test_a_scheduler_that_goes_loses_no_picture(whitted, tmp_path, monkeypatch):
             "--workers and --scheduler: the scheduler has its own",
         ),
         (("--workers", "0"), "argument --workers: must lie between 1 and 1024, found 0"),
-        (("--scheduler", "tcp://127.0.0.1:1"), "--scheduler: nothing answers at tcp://127.0.0.1:1"),
-        (("--scheduler", "here"), "--scheduler: nothing answers at here"),
+        (("--scheduler", "tcp://127.0.0.1:1"), "--scheduler: nothing answers at 'tcp://127.0.0.1:1'"),
+        (("--scheduler", "here"), "--scheduler: nothing answers at 'here'"),
+        (("--scheduler", "tls://127.0.0.1:1"), "--scheduler: nothing answers at 'tls://127.0.0.1:1': TLS expects"),
         (("--workers", "2", "--adaptive", "8"), "--adaptive: not with --workers or --scheduler"),
     ],
 )

@@ -8,6 +8,7 @@ import pytest
 
 from converter.batch.manifest import MANIFEST, Manifest, digest_of
 from converter.commands import main
+from converter.files import only_one
 from converter.films.addresses import AddressError, changed, find_address, names_of, read
 from converter.films.curve import Key, value_at
 from converter.films.script import frame_scene, read_script
@@ -183,6 +184,23 @@ def test_shapes_are_displaced_as_points_are():
     ("keys", "message"),
     [
         ("a = x\n", "s.toml:1: column 5: Invalid value"),
+        ("a = " + "[" * 5000, "s.toml: maximum recursion depth exceeded"),
+        ("a = " + "1" * 5000, "s.toml: Exceeds the limit"),
+        (
+            '[tracks."camera.fovy"]\nkeys=[[0, 1' + "0" * 400 + "]]",
+            "s.toml:2: camera.fovy, key 1: its value must be a number, found 1000",
+        ),
+        ('[tracks."camera.eye"]\nkeys=[[nan, [0, 0, 0]]]', "s.toml:2: camera.eye, key 1: its time must be a number of"),
+        ('[tracks."camera.fovy"]\nkeys=[[1e300, 40]]', "the last key is at 1e+300 s, which takes more than 1000000"),
+        (
+            '[tracks."camera.eye.x"]\nkeys=[[0, 1e308], [1, -1e308]]',
+            "s.toml: frame 1 would be no scene: a number between two keys must be finite, found -inf",
+        ),
+        (
+            f'[tracks."objects[{9 * "9"}9].shift"]\nkeys=[[0, 1]]',
+            "s.toml:1: 'objects[9999999999].shift' is no path from '[9999999999].shift' on",
+        ),
+        ('[tracks."bull.x"]\nkeys=[[0, 1]]', "s.toml:1: there is no 'bull'"),
         ("\nshuter = 1\n", "s.toml:2: a file of keyframes has no 'shuter' (did you mean 'shutter'?)"),
         ("shutter = 2\n", "s.toml:1: shutter must be a share from 0 to 1, found 2"),
         ("", 's.toml: there are no tracks, as in [tracks."camera.eye"]'),
@@ -322,6 +340,64 @@ def test_a_second_start_draws_what_is_not_there(film, whitted, tmp_path):
     assert drawn("--samples", "4", "--anew") == {"0", "1", "2"}
     film(KEYS, TEXT.replace(".8 .7 .6", ".8 .7 .5"))
     assert drawn() == {"0", "1", "2"}
+
+
+@pytest.mark.parametrize(
+    ("words", "message"),
+    [
+        (("--fps", "1e-9"), "argument --fps: must lie between 0.001 and 1000, found 1e-9"),
+        (("--fps", "-1"), "argument --fps: must lie between 0.001 and 1000, found -1"),
+        (("--keys", "no.toml"), "no.toml: there is no such file of keyframes; --keys names another"),
+    ],
+)
+def test_options_that_make_no_film(film, whitted, tmp_path, words, message):
+    status, _, err = whitted("animate", film(), tmp_path / "f.gif", 4, 3, *NATIVE, *words)
+    assert (status, err.startswith(f"whitted animate: {message}")) == (2, True), err
+
+
+@pytest.mark.parametrize(
+    ("name", "message"),
+    [
+        ("{frame:.png", "FILM: '{frame:.png' is no pattern: "),
+        ("{frame:9999999999}.png", "FILM: '{frame:9999999999}.png' asks for a name of more than 999 characters"),
+        ("{frame}.avi/a", "0.avi/a: no ending that says which picture format is meant"),
+        ("a/{frame}.avi", "a/0.avi: unknown picture format '.avi'"),
+        ("s.in/{frame}.png", "s.in: this is a file, and a folder is needed"),
+    ],
+)
+def test_names_that_are_no_film(film, whitted, tmp_path, monkeypatch, name, message):
+    monkeypatch.chdir(tmp_path)
+    film()
+    status, _, err = whitted("animate", "s.in", name, 4, 3, *NATIVE)
+    assert (status, err.startswith(f"whitted animate: {message}")) == (2, True), err
+    assert {file.name for file in tmp_path.iterdir()} == {"s.in", "s.toml"}
+
+
+def test_two_commands_at_once(film, whitted, tmp_path):
+    """The second is refused, for the first removes the pictures that both would have."""
+    words = ("animate", film(), tmp_path / "f.gif", 4, 3, "--frames", "2", *NATIVE, "-q")
+    folder = tmp_path / "f.gif.frames"
+    folder.mkdir()
+    with only_one(folder) as alone:
+        assert alone
+        status, _, err = whitted(*words)
+    assert status == 2
+    assert "another command draws this film at this moment" in err
+    assert folder.is_dir()
+    assert whitted(*words) == (0, "", "")
+    assert not folder.exists()
+
+
+def test_one_picture_is_no_pictures(film, whitted, tmp_path):
+    _, _, err = whitted("animate", film(), tmp_path / "f.gif", 4, 3, "--frames", "1", *NATIVE[:2])
+    assert ": 1 picture, 4 x 3" in err
+
+
+def test_a_manifest_that_is_damaged(tmp_path):
+    """What is added to it counts all the same."""
+    (tmp_path / MANIFEST).write_bytes(b"\xff\x80\n")
+    Manifest(tmp_path).write(tmp_path / "a.ppm", "source", b"picture")
+    assert Manifest(tmp_path).has(tmp_path / "a.ppm", "source")
 
 
 def test_a_manifest_that_was_cut_short(tmp_path):

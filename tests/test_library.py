@@ -69,6 +69,7 @@ def test_certifies():
     scene = whitted.load_scene(FIGURE)
     certificate = whitted.certify(scene, 16, 12)
     assert certificate.certified.all()
+    assert repr(certificate) == "<16 x 12 pixels, 192 certified>"
     levels = np.asarray(np.clip(whitted.render(scene, 16, 12), 0, 1) * 255 + 0.5).astype(np.uint8)
     assert not certificate.misses(levels).any()
     assert certificate.misses(levels ^ 4).all()
@@ -83,6 +84,64 @@ def test_tells_what_is_wrong():
     with pytest.raises(whitted.SceneError, match=r"nowhere\.in"):
         whitted.load_scene("nowhere.in")
     assert "exact" in whitted.methods()["native"]
+
+
+SIZES = [{"width": 0}, {"width": 1.5}, {"width": "8"}, {"height": True}, {"height": 10**9}]
+NO_SETTINGS = [
+    *[(given, "must be a whole number from 1 to 1000000, found") for given in SIZES],
+    ({"samples": 3}, "samples must be a square number"),
+    ({"samples": 4.0}, "samples must be a whole number from 1 to 65536, found 4.0"),
+    ({"cutoff": -1}, "cutoff must be a finite number that is not negative, found -1"),
+    ({"cutoff": float("nan")}, "cutoff must be a finite number"),
+    ({"max_depth": 0.5}, "max_depth must be a whole number from 0 to"),
+    ({"threads": -3}, "threads must be a whole number from 0 to 1024, found -3"),
+    ({"seed": -1}, "seed must be a whole number"),
+    ({"seed": None}, "seed must be a whole number"),
+    ({"pixel": "centre"}, "pixel must be 'corner' or 'center', found 'centre'"),
+    ({"background": "red"}, "background must be three finite numbers"),
+    ({"background": (0, 0, float("inf"))}, "background must be three finite numbers"),
+    ({"crop": (0, 0, 4)}, "crop must be four whole numbers"),
+    ({"crop": (-1, 0, 4, 4)}, "crop must be a part of a picture of 8 x 6 pixels"),
+    ({"crop": (3, 0, 3, 4)}, "crop must be a part of a picture"),
+]
+
+
+@pytest.mark.parametrize(("given", "message"), NO_SETTINGS)
+def test_a_setting_that_makes_no_sense(given, message):
+    scene = whitted.load_scene(FIGURE)
+    for work in (whitted.render, whitted.certify):
+        with pytest.raises(ValueError, match=message):
+            work(scene, **{"width": 8, "height": 6, **given})
+
+
+def test_numbers_of_numpy_are_numbers():
+    scene = whitted.load_scene(FIGURE)
+    picture = whitted.render(scene, np.int64(8), np.uint8(6), background=np.zeros(3), cutoff=np.float32(0.25))
+    plain = whitted.render(scene, 8, 6, background=(0, 0, 0), cutoff=0.25)
+    assert picture.pixels.tobytes() == plain.pixels.tobytes()
+
+
+def test_what_is_no_scene_or_picture():
+    scene = whitted.load_scene(FIGURE)
+    picture = whitted.render(scene, 8, 6)
+    for work in (whitted.render, whitted.certify):
+        with pytest.raises(TypeError, match="a scene is expected, from load_scene or load_text, found str"):
+            work("figure1.in", 8, 6)
+        with pytest.raises(TypeError, match="progress must be a function"):
+            work(scene, 8, 6, progress=5)
+        with pytest.raises(TypeError, match=r"no setting 'sampels' \(did you mean 'samples'\?\)"):
+            work(scene, 8, 6, sampels=4)
+    with pytest.raises(TypeError, match="method must be a name"):
+        whitted.render(scene, 8, 6, method=None)
+    for pair in ((picture, picture.pixels), (None, picture)):
+        with pytest.raises(TypeError, match="a picture is expected"):
+            whitted.compare(*pair)
+    with pytest.raises(ValueError, match="limit_percent must be"):
+        whitted.compare(picture, picture, -1)
+    with pytest.raises(ValueError, match="ulps must be a finite number"):
+        whitted.certify(scene, 8, 6, ulps=-1)
+    with pytest.raises(ValueError, match="a certificate is of all pixels"):
+        whitted.certify(scene, 8, 6, crop=(0, 0, 4, 4))
 
 
 class EnoughError(Exception):

@@ -1,6 +1,7 @@
 """Many scenes in one process, and parts of pictures."""
 
 import json
+import shutil
 from pathlib import Path
 
 import numpy as np
@@ -64,10 +65,18 @@ def test_a_part_of_what_no_memory_holds(mi, renderer):
 @pytest.mark.parametrize(
     ("options", "message"),
     [
-        (("--crop", "3,5,3,17"), "--crop: this is no part of a picture of 40 x 30 pixels"),
-        (("--crop", "3,5,41,17"), "--crop: this is no part of a picture of 40 x 30 pixels"),
+        (
+            ("--crop", "3,5,3,17"),
+            "--crop: a part has X0 < X1 and Y0 < Y1 within a picture of 40 x 30 pixels, found 3,5,3,17",
+        ),
+        (
+            ("--crop", "3,5,41,17"),
+            "--crop: a part has X0 < X1 and Y0 < Y1 within a picture of 40 x 30 pixels, found 3,5,41",
+        ),
+        (("--crop", "-3,5,4,17"), "argument --crop: must lie between 0 and 1000000, found -3"),
+        (("--rows", "-3:5"), "argument --rows: must lie between 0 and 1000000, found -3"),
         (("--crop", "3,5,7"), "argument --crop: must be four numbers with commas between them, found '3,5,7'"),
-        (("--rows", "31:"), "--rows: this is no part of a picture of 40 x 30 pixels"),
+        (("--rows", "31:"), "--rows: a part has A < B within a picture of 40 x 30 pixels, found 31:30"),
         (("--rows", "3"), "argument --rows: must be FIRST:END, such as 0:100, found '3'"),
         (("--rows", "3:4", "--adaptive", "8"), "--adaptive: what a pixel's neighbours are decides"),
         (("--size", "3x4"), "--size: WIDTH and HEIGHT are given already"),
@@ -101,6 +110,19 @@ def test_many_scenes(whitted, tmp_path):
 def test_many_quietly(whitted, tmp_path):
     words = ("--size", "8x6", *NATIVE, "-q")
     assert whitted("render", SCENES / "figure1.in", f"-o{tmp_path}/{{name}}.ppm", *words) == (0, "", "")
+
+
+def test_a_size_among_many_scenes(whitted, tmp_path):
+    status, _, err = whitted("render", SCENES / "figure1.in", "-o", tmp_path / "{name}.ppm", "40", "30")
+    assert status == 2
+    assert "a size is given as --size WxH where there is -o" in err
+
+
+def test_files_that_begin_with_a_hyphen(whitted, tmp_path, monkeypatch):
+    monkeypatch.chdir(tmp_path)
+    shutil.copy(SCENES / "films" / "orbit.in", "-a.in")
+    assert whitted("render", *NATIVE, "-q", "--", "-a.in", "-b.ppm", "8", "6") == (0, "", "")
+    assert (tmp_path / "-b.ppm").exists()
 
 
 @pytest.mark.parametrize(
@@ -154,6 +176,7 @@ def test_what_an_earlier_call_drew_is_kept(whitted, tmp_path):
         ("a.ppm", "figure1.in would both become a.ppm: {name} is"),
         ("{nome}.ppm", "-o/--out: there is no {nome}: a pattern may have {name} and {number}"),
         ("{name.ppm", "-o/--out: '{name.ppm' is no pattern: expected '}' before end of string"),
+        ("{name:9999999999}.ppm", "-o/--out: '{name:9999999999}.ppm' asks for a name of more than 999 characters"),
         ("{number:q}.ppm", "-o/--out: '{number:q}.ppm' is no pattern: Unknown format code 'q'"),
     ],
 )

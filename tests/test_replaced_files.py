@@ -1,5 +1,6 @@
 """Files that appear whole or not at all."""
 
+import errno
 import os
 
 import pytest
@@ -18,6 +19,20 @@ def test_a_file_is_replaced_whole_or_not_at_all(tmp_path):
         temporary.write_text("newer")
     assert file.read_text() == "newer"
     assert list(tmp_path.iterdir()) == [file]
+
+
+def test_a_full_disk_is_told_of_the_file_that_was_meant(tmp_path):
+    """Not of the other name that it has until it is whole, nor of none."""
+    file = tmp_path / "a.csv"
+    for name in (None, "temporary"):
+        with pytest.raises(OSError, match="No space left") as full, replacing(file) as temporary:
+            temporary.write_text("half")
+            raise OSError(errno.ENOSPC, "No space left on device", str(temporary) if name else None)
+        assert full.value.filename == str(file)
+    with pytest.raises(FileNotFoundError) as other, replacing(file):
+        (tmp_path / "missing").read_text()
+    assert other.value.filename == str(tmp_path / "missing")
+    assert list(tmp_path.iterdir()) == []
 
 
 def test_a_link_stays_and_into_what_is_no_file_is_copied(tmp_path):

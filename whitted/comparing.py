@@ -8,6 +8,7 @@ import numpy as np
 
 from converter.compare.metrics import Difference
 from converter.compare.report import Pictures, Report, difference_rows, make_report, verdict
+from whitted.checking import not_negative
 from whitted.picture import Picture
 
 
@@ -59,7 +60,12 @@ def compare(reference: Picture, candidate: Picture, limit_percent: float = 0.1) 
 
     Raises:
         converter.compare.metrics.SizeMismatch: their sizes differ; a ValueError.
+        TypeError: one is no picture.
 
     """
+    for picture in (reference, candidate):
+        if not isinstance(picture, Picture):
+            raise TypeError(f"a picture is expected, from render or load_picture, found {type(picture).__name__}")
+    limit_percent = not_negative("limit_percent", limit_percent)
     pixels = np.asarray(reference), np.asarray(candidate)
     return Comparison(make_report(Pictures(reference.name, candidate.name, *pixels), limit_percent))

@@ -8,7 +8,7 @@ import numpy as np
 from converter.renderers.base import Interrupted, Rendering
 from converter.renderers.methods import METHODS, find_method
 from converter.scene.model import Scene
-from converter.scene.settings import Settings
+from whitted.checking import check_progress, check_scene, checked_settings
 from whitted.picture import Picture
 
 
@@ -46,11 +46,15 @@ def render(
         RendererUnavailable: the method does not run here, or cannot draw an effect that the scene has.
         Stopped: Ctrl-C while it was drawing.
         ValueError: there is no such method; a texture cannot be read; a setting makes no sense.
-        TypeError: there is no such setting.
+        TypeError: there is no such setting; `scene` is none.
 
     """
+    check_scene(scene)
+    check_progress(progress)
+    if not isinstance(method, str):
+        raise TypeError(f"method must be a name of methods(), found {method!r}")
     chosen = find_method(method)
-    given = chosen.settings(Settings(width=width, height=height, **settings))
+    given = chosen.settings(checked_settings(width=width, height=height, **settings))
     try:
         return _picture(chosen.renderer(variant).render(scene, given, progress), chosen.name)
     except Interrupted as stop:

@@ -6,7 +6,7 @@ from typing import Any
 from converter.certify.certificate import Certificate
 from converter.certify.certificate import certify as _certify
 from converter.scene.model import Scene
-from converter.scene.settings import Settings
+from whitted.checking import check_progress, check_scene, checked_settings, not_negative
 
 
 def certify(
@@ -26,12 +26,17 @@ def certify(
         height: rows.
         ulps: every number of the scene that is not whole is known to so many units in the last place of a double only.
         progress: called now and then, from the calling thread, with the finished share, 0 to 1.
-        settings: more of `converter.scene.settings.Settings`.
+        settings: more of `converter.scene.settings.Settings`, without `crop`: it is of all pixels.
 
     Raises:
         RendererUnavailable: the module is not built, or the scene is sampled.
         ValueError: a texture cannot be read; a setting makes no sense.
-        TypeError: there is no such setting.
+        TypeError: there is no such setting; `scene` is none.
 
     """
-    return _certify(scene, Settings(width=width, height=height, **settings), ulps, progress)
+    check_scene(scene)
+    check_progress(progress)
+    given = checked_settings(width=width, height=height, **settings)
+    if given.crop is not None:
+        raise ValueError("crop must be None: a certificate is of all pixels")
+    return _certify(scene, given, not_negative("ulps", ulps), progress)

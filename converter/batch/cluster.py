@@ -6,13 +6,16 @@ need none of our files. Few pictures are asked for at a time, so that few wait h
 """
 
 import logging
+import math
 import signal
 import threading
 import time
+import warnings
 from collections.abc import Callable, Iterable, Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass, replace
 from hashlib import sha256
+from importlib import metadata
 from importlib.util import find_spec
 from itertools import count as counted
 from pathlib import Path
@@ -30,6 +33,8 @@ AHEAD = 3
 """Tasks at a time, for each worker: one is at work, the others wait."""
 TASK_SECONDS = 0.5
 """What a task takes, of pictures that take less."""
+COUNTING_SECONDS = 2.0
+"""Between two looks at how many workers there are."""
 PATIENCE = 20.0
 """Seconds to wait for a scheduler that does not answer."""
 
@@ -74,11 +79,14 @@ def cluster(workers: int | None, scheduler: str | None, quiet: bool) -> Iterator
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     if scheduler is not None:
         try:
-            client = Client(scheduler, timeout=PATIENCE)
-        except (OSError, ValueError) as error:
-            raise ClusterError(f"--scheduler: nothing answers at {scheduler}: {error}") from error
+            with warnings.catch_warnings(action="ignore"):  # of other versions of what does not matter
+                client = Client(scheduler, timeout=PATIENCE)
+        except Exception as error:  # Dask has many for addresses that are none, or need what is not set up
+            raise ClusterError(f"--scheduler: nothing answers at {scheduler!r}: {error}") from error
         with client:
             say(f"note: the workers of {client.scheduler.address} draw{_dashboard(client)}", quiet)
+            if not client.nthreads():
+                say("note: there are no workers yet; those that come draw", quiet)
             yield Cluster(client, 0)
         return
     count = workers or 1
@@ -146,6 +154,7 @@ def drawn_by(found: Cluster, wanted: Iterable[Wanted], count: int, progress: Pro
     waiting: dict[Any, list[_Piece]] = {}
     seconds, drawn, done = 0.0, 0, 0.0
     while True:
+        sending.count_workers()
         while len(waiting) < sending.room:
             left = count - done
             size = min(TASK_SECONDS * drawn / max(seconds, 1e-6), left / (2 * sending.workers)) if drawn else 1
@@ -196,12 +205,31 @@ class _Sending:
     def __init__(self, found: Cluster, count: int) -> None:
         self._client, self._threads = found.client, found.threads
         self._keys = counted()
+        self.workers = 1
+        self._known: set[str] = set()
         self._job: tuple[Job | None, Any, list[Any]] = (None, None, [])
         self._textures: dict[str, Any] = {}
-        self.workers = max(1, len(self._client.nthreads()))
-        self.room = AHEAD * self.workers
+        self._counted = -math.inf
+        self.count_workers()
         # Fewer pictures than workers are cut finer, so that all have something to do.
         self._least = 2 * self.workers if count < self.workers else 1
+
+    def count_workers(self) -> None:
+        """See how many workers there are, if that was some time ago: of a cluster they come and go.
+
+        Raises:
+            ClusterError: one does not have this package, or another version of it.
+
+        """
+        if time.monotonic() - self._counted < COUNTING_SECONDS:
+            return
+        with suppress(OSError):  # the scheduler is gone, as is told elsewhere
+            found = set(self._client.nthreads())
+            _check_versions(self._client, found - self._known)
+            self._known |= found
+            self.workers = max(1, len(found))
+        self.room = AHEAD * self.workers
+        self._counted = time.monotonic()
 
     def pieces_of(self, wanted: Wanted) -> Iterator[_Piece]:
         job, picture = wanted.job, wanted.picture
@@ -231,6 +259,23 @@ class _Sending:
         if name not in self._textures:
             self._textures[name] = self._client.submit(same, Blob(name, data), key=f"texture-{name}", pure=True)
         return self._client.submit(_named, str(file), self._textures[name], pure=False)
+
+
+def _check_versions(client: Any, workers: set[str]) -> None:
+    from converter.commands.version import version
+
+    ours = version()
+    if not workers or not ours[0].isdigit():  # which of a source folder is not known
+        return
+    # A function of ours could not travel to a worker that lacks the package.
+    answers = client.run(metadata.version, "whitted", workers=sorted(workers), on_error="return")
+    for address, found in answers.items():
+        if isinstance(found, metadata.PackageNotFoundError):
+            raise ClusterError(f"the worker at {address} does not have this package: pip install 'whitted[cluster]'")
+        if isinstance(found, str) and found != ours:
+            raise ClusterError(
+                f"the worker at {address} has whitted {found}, and this is {ours}: they must be the same"
+            )
 
 
 def _named(file: str, blob: Blob) -> tuple[str, Blob]:

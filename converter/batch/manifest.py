@@ -9,7 +9,7 @@ from hashlib import sha256
 from pathlib import Path
 from typing import Any
 
-from converter.files import replacing
+from converter.files import make_folder, replacing
 
 MANIFEST = ".whitted-pictures"
 
@@ -23,7 +23,7 @@ class Manifest:
     """The pictures of a folder, which is made where it is missing."""
 
     def __init__(self, folder: Path) -> None:
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
         self._file = folder / MANIFEST
         self._known = dict(_read(self._file))
 
@@ -66,8 +66,8 @@ def _read(file: Path) -> list[tuple[str, tuple[str, str]]]:
     """The lines that are whole: the last may be cut short where a process was killed."""
     result = []
     try:
-        lines = file.read_text(encoding="ascii").splitlines()
-    except (OSError, UnicodeDecodeError):
+        lines = file.read_bytes().splitlines()
+    except OSError:
         return []
     for line in lines:
         try:

@@ -31,7 +31,7 @@ DETERMINED = ("byte", "range")
 """Of these, what does not say that a scene leaves a decision open: a colour may lie between two levels."""
 
 
-@dataclass(frozen=True, slots=True)
+@dataclass(frozen=True, slots=True, repr=False)
 class Certificate:
     """What is proven of a picture.
 
@@ -55,6 +55,10 @@ class Certificate:
     tied: NDArray[np.bool_]
     digits: tuple[int, ...]
     seconds: dict[str, float]
+
+    def __repr__(self) -> str:
+        height, width = self.undecided.shape
+        return f"<{width} x {height} pixels, {np.count_nonzero(self.certified)} certified>"
 
     @property
     def certified(self) -> NDArray[np.bool_]:

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from converter.commands.cluster_options import add_cluster_options, check_cluster_options
-from converter.commands.exits import OK
+from converter.commands.exits import OK, UsageError
 from converter.commands.method_options import add_method_options, check_variant, choose, native_instead
 from converter.commands.options import Parser, add_reading_options, add_running_options, add_size, whole
 from converter.commands.parts import add_part_options, with_part
@@ -20,6 +20,7 @@ if TYPE_CHECKING:
 
 MOST_FRAMES = 1_000_000
 FPS = 24
+LEAST_FPS, MOST_FPS = Fraction(1, 1000), 1000
 
 
 def parser() -> Parser:
@@ -74,8 +75,8 @@ def _fps(text: str) -> Fraction:
         value = Fraction(text)
     except (ValueError, ZeroDivisionError):
         raise argparse.ArgumentTypeError(f"must be a number or a fraction such as 30000/1001, found {text!r}") from None
-    if not 0 < value <= 1000:
-        raise argparse.ArgumentTypeError(f"must lie between 0 and 1000, found {text}")
+    if not LEAST_FPS <= value <= MOST_FPS:
+        raise argparse.ArgumentTypeError(f"must lie between {float(LEAST_FPS)} and {MOST_FPS}, found {text}")
     return value.limit_denominator(10_000)
 
 
@@ -102,15 +103,27 @@ def run(arguments: argparse.Namespace) -> int:
     scene = load_with_notices(arguments.scene, method.settings, arguments.quiet, arguments.method)
     keys = arguments.keys or arguments.scene.with_suffix(".toml")
     script = read_script(keys, scene, decode(arguments.scene.read_bytes(), arguments.scene))
-    count = arguments.frames or max(1, math.ceil(script.seconds * arguments.fps))
+    count = arguments.frames or _frames_of(script, arguments.fps)
     method = method._replace(settings=_sampled(method.settings, script))
     filming = Filming(arguments, method, scene, script, keys, count)
     with native_instead(method.name):
         drawn, seconds = filming.run()
     size = "{} x {}".format(*method.settings.drawn_size)
+    pictures = "1 picture" if count == 1 else f"{count} pictures"
     kept = "" if drawn == count else f", {count - drawn} of them were there"
-    say(f"{arguments.film}: {count} pictures{kept}, {size}, {method.name}, {seconds:.2f} s", arguments.quiet)
+    say(f"{arguments.film}: {pictures}{kept}, {size}, {method.name}, {seconds:.2f} s", arguments.quiet)
     return OK
+
+
+def _frames_of(script: "Script", fps: Fraction) -> int:
+    """As many pictures as reach the last key."""
+    count = max(1, math.ceil(Fraction(script.seconds) * fps))
+    if count > MOST_FRAMES:
+        raise UsageError(
+            f"the last key is at {script.seconds:g} s, which takes more than {MOST_FRAMES} frames: --frames or --fps "
+            "can ask for fewer"
+        )
+    return count
 
 
 def _sampled(settings: Settings, script: "Script") -> Settings:

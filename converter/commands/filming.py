@@ -17,11 +17,11 @@ from converter.commands.exits import UsageError
 from converter.commands.method_options import Chosen
 from converter.commands.patterns import fields_of, has_fields, named
 from converter.commands.progress import ProgressBar
-from converter.files import check_apart, check_target, is_special, replacing
+from converter.files import check_apart, check_target, is_special, make_folder, only_one, replacing
 from converter.films.errors import FilmError
-from converter.films.script import Script
+from converter.films.script import Changes, Script
 from converter.films.writers import ENDINGS, check_writer, write_film
-from converter.images.write import check_writable
+from converter.images.write import check_ending, check_writable
 from converter.pigments.table import pigment_kind
 from converter.renderers.partial import identity
 from converter.scene.errors import SceneError
@@ -65,8 +65,9 @@ class Filming:
         pictures = [named("FILM", str(pattern), frame=k) for k in range(self.count)]
         if len(set(pictures)) < len(pictures):
             raise UsageError(f"FILM: {pattern} gives two frames one name")
+        check_ending(pictures[0], self.arguments.format)
         for folder in {picture.parent for picture in pictures}:
-            folder.mkdir(parents=True, exist_ok=True)
+            make_folder(folder)
         check_writable(pictures[0], self.arguments.format)
         for picture in pictures:
             check_apart(picture, self._sources())
@@ -96,9 +97,13 @@ class Filming:
                 yield Path(temporary)
             return
         folder = film.with_name(f"{film.name}.frames")
-        yield folder
-        if not self.arguments.keep_frames:
-            shutil.rmtree(folder)
+        make_folder(folder)
+        with only_one(folder) as alone:
+            if not alone:
+                raise FilmError(f"{film}: another command draws this film at this moment, into {folder}")
+            yield folder
+            if not self.arguments.keep_frames:
+                shutil.rmtree(folder)
 
     def _draw(self, pictures: list[Path], ending: str, bar: ProgressBar) -> int:
         """Draw those that are not there; how many."""
@@ -107,12 +112,16 @@ class Filming:
         same = identity(self.scene, settings, self.method.name)
         seconds = Fraction(1) / self.arguments.fps
         manifests = {folder: Manifest(folder) for folder in {picture.parent for picture in pictures}}
-        wanted: list[tuple[int, Picture, str]] = []
+
+        def changes(k: int) -> Changes:
+            return self.script.changes(float(k * seconds), float(seconds))
+
+        # What changes is worked out once more for each that is drawn: of all frames it is too much to keep.
+        wanted: list[tuple[int, str]] = []
         for k, file in enumerate(pictures):
-            changes = self.script.changes(float(k * seconds), float(seconds))
-            source = digest_of(same, ending, changes)
+            source = digest_of(same, ending, changes(k))
             if self.arguments.anew or not manifests[file.parent].has(file, source):
-                wanted.append((k, Picture(changes), source))
+                wanted.append((k, source))
         there = len(pictures) - len(wanted)
 
         def told(share: float) -> None:
@@ -120,10 +129,10 @@ class Filming:
 
         if not wanted:
             return 0
-        asked = (Wanted(i, job, picture) for i, (_, picture, _) in enumerate(wanted))
+        asked = (Wanted(i, job, Picture(changes(k))) for i, (k, _) in enumerate(wanted))
         with draw_pictures(self.arguments, asked, len(wanted), told) as results:
             for i, found in results:
-                k, _, source = wanted[i]
+                k, source = wanted[i]
                 if isinstance(found, SceneError):
                     raise FilmError(f"{self.keys}: frame {k} would be no scene: {found.problems[0].message}")
                 if isinstance(found, Exception):

@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, Any, NamedTuple
 from converter.batch.manifest import Manifest, digest_of
 from converter.commands.exits import OK, UsageError, tell, told
 from converter.commands.patterns import fields_of, named
+from converter.files import make_folder
 
 if TYPE_CHECKING:
     from converter.commands.method_options import Chosen
@@ -52,7 +53,7 @@ def pictures_of(scenes: list[Path], pattern: str) -> list[Path]:
             )
         first[picture] = scene
     for folder in {picture.parent for picture in pictures}:
-        folder.mkdir(parents=True, exist_ok=True)
+        make_folder(folder)
     return pictures
 
 
@@ -151,5 +152,8 @@ def check_together(arguments: argparse.Namespace) -> None:
     """
     if arguments.adaptive_map is not None:
         raise UsageError("--adaptive-map: it is for one scene, without -o")
+    for scene in arguments.scene[1:]:
+        if str(scene).isdecimal() and not scene.exists():
+            raise UsageError(f"{scene}: there is no such scene; a size is given as --size WxH where there is -o")
     if arguments.stats:
         raise UsageError("--stats: it is for one scene, without -o; --json tells it of many")

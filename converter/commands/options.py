@@ -3,16 +3,16 @@
 import argparse
 import math
 import os
+import re
+import sys
 from collections.abc import Sequence
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from converter.commands.exits import UsageError
 from converter.scene.depth import MAX_DEPTH
 from converter.scene.model import Color
-from converter.scene.settings import MOST_THREADS, SAMPLES, Settings
+from converter.scene.settings import MAX_SAMPLES, MAX_SEED, MAX_SIZE, MOST_THREADS, SAMPLES, Settings
 
-MAX_SIZE = 1_000_000
-MAX_SAMPLES = 65536
 DEFAULTS = Settings()
 
 
@@ -39,6 +39,17 @@ class Parser(argparse.ArgumentParser):
             formatter_class=_HelpFormatter,
             allow_abbrev=False,
         )
+        # argparse takes -1 for a number, and -1,0,2,2 for an option that it does not know.
+        self._negative_number_matcher = re.compile(r"-\.?\d")
+
+    def parse_intermixed_args(self, args: Sequence[str] | None = None, namespace: Any = None) -> argparse.Namespace:  # type: ignore[override]
+        """Parse words, of which those behind -- are files, be their first letter a hyphen: argparse forgets the --."""
+        words = list(sys.argv[1:] if args is None else args)
+        if "--" in words:
+            k = words.index("--")
+            words[k:] = [f"./{word}" if word[:1] == "-" != word else word for word in words[k + 1 :]]
+        result: argparse.Namespace = super().parse_intermixed_args(words, namespace)
+        return result
 
     def error(self, message: str) -> NoReturn:
         """Raise `UsageError`."""
@@ -111,7 +122,7 @@ def _depth(text: str) -> int:
 
 
 def _seed(text: str) -> int:
-    return whole(text, 0, 2**32 - 1)
+    return whole(text, 0, MAX_SEED)
 
 
 def _threads(text: str) -> int:

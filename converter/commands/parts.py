@@ -4,8 +4,8 @@ import argparse
 from dataclasses import replace
 
 from converter.commands.exits import UsageError
-from converter.commands.options import MAX_SIZE, whole
-from converter.scene.settings import Crop, Settings
+from converter.commands.options import whole
+from converter.scene.settings import MAX_SIZE, Crop, Settings
 
 
 def add_part_options(parser: argparse.ArgumentParser) -> None:
@@ -31,14 +31,17 @@ def with_part(settings: Settings, arguments: argparse.Namespace) -> Settings:
     """
     if arguments.crop is not None:
         option, part = "--crop", arguments.crop
+        found, wanted = ",".join(map(str, part)), "X0 < X1 and Y0 < Y1 within"
     elif arguments.rows is not None:
         first, end = arguments.rows
         option, part = "--rows", (0, first, settings.width, settings.height if end is None else end)
+        found, wanted = f"{part[1]}:{part[3]}", "A < B within"
     else:
         return settings
     left, top, right, bottom = part
     if not (left < right <= settings.width and top < bottom <= settings.height):
-        raise UsageError(f"{option}: this is no part of a picture of {settings.width} x {settings.height} pixels")
+        size = f"{settings.width} x {settings.height}"
+        raise UsageError(f"{option}: a part has {wanted} a picture of {size} pixels, found {found}")
     return replace(settings, crop=part)
 
 

@@ -16,7 +16,11 @@ def fields_of(option: str, pattern: str, known: tuple[str, ...]) -> set[str]:
 
     """
     try:
-        found = {name for _, name, _, _ in Formatter().parse(pattern) if name is not None}
+        parts = [(name, form) for _, name, form, _ in Formatter().parse(pattern) if name is not None]
+        found = {name for name, _ in parts}
+        for _, form in parts:
+            if re.search(r"\d{4}", form or ""):
+                raise UsageError(f"{option}: {pattern!r} asks for a name of more than 999 characters")
         for name in found:
             if name not in known:
                 there = " and ".join(f"{{{each}}}" for each in known)
@@ -40,5 +44,5 @@ def named(option: str, pattern: str, **values: Any) -> Path:
 
 
 def has_fields(pattern: str) -> bool:
-    """Whether a file's name is a pattern."""
-    return re.search(r"(?<!\{)\{[a-z]*(:[^{}]*)?\}", pattern) is not None
+    """Whether a file's name is a pattern, be it one whose bracket is not closed."""
+    return re.search(r"(?<!\{)\{([a-z]*(:[^{}]*)?\}|frame\b)", pattern) is not None

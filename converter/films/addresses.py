@@ -19,7 +19,7 @@ SHIFT = "shift"
 """An object's displacement from where the file has it: a number of it that no file has."""
 _ROOTS = ("camera", "lights", "pigments", "finishes", "objects")
 _COLORS = ("color", "first", "second", "ambient")
-_STEP = re.compile(r"\.([A-Za-z_]\w*)|\[(\d+)\]")
+_STEP = re.compile(r"\.([A-Za-z_]\w*)|\[([0-9]{1,9})\]")
 _NAME = re.compile(r"[^.\[\]#]+")
 _COMMENT = re.compile(r"#\s*(\w[\w -]*?)\s*$")
 _LETTERS = {"quadric": "ABCDEFGHIJ", "plane": "abcd", "color": "rgb", "vector": "xyz"}
@@ -64,7 +64,7 @@ def find_address(scene: Scene, path: str, names: Mapping[str, Sequence[str]]) ->
         if len(places) != 1:
             if places:
                 raise AddressError(f"{name!r} is the name of {' and '.join(places)}")
-            hint = did_you_mean(name, (*_ROOTS, *names)) or f": a path begins with {_likely(_ROOTS)}"
+            hint = did_you_mean(name, (*_ROOTS, *names)) or f": a path begins with {_likely((*_ROOTS, *names))}"
             raise AddressError(f"there is no {name!r}{hint}")
         path = places[0] + path[at:]
         name = places[0].partition("[")[0]

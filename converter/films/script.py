@@ -12,19 +12,20 @@ keys = [
 ]
 """
 
-import math
 import re
+import sys
 import tomllib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
-from itertools import pairwise, takewhile
+from itertools import filterfalse, pairwise, takewhile
+from math import isfinite
 from pathlib import Path
 from typing import Any, cast
 
 from converter.films.addresses import Address, AddressError, changed, displacement, find_address, moved_object, names_of
 from converter.films.curve import EASINGS, Easing, Key, Value, value_at
 from converter.films.errors import film_error
-from converter.scene.errors import did_you_mean
+from converter.scene.errors import Problem, SceneError, did_you_mean
 from converter.scene.model import Scene
 
 _TOP, _TRACK = ("shutter", "tracks"), ("keys", "easing", "loop")
@@ -107,6 +108,10 @@ def frame_scene(scene: Scene, changes: Changes) -> Scene:
     from converter.scene.parser import parse_scene
     from converter.scene.writer import write_scene
 
+    for _, value in changes:
+        if not all(map(isfinite, value)):
+            found = next(filterfalse(isfinite, value))
+            raise SceneError([Problem(scene.file, 0, 0, f"a number between two keys must be finite, found {found}")])
     result = changed(scene, changes)
     parse_scene(write_scene(result), scene.file)
     return result
@@ -121,7 +126,13 @@ class _Reading:
             self._data = tomllib.loads(self._text)
         except UnicodeDecodeError:
             raise film_error(file, 0, "this is no UTF-8 text") from None
-        except tomllib.TOMLDecodeError as error:
+        except FileNotFoundError:
+            raise film_error(
+                file,
+                0,
+                "there is no such file of keyframes; --keys names another, docs/films.md tells what is in it",
+            ) from None
+        except (ValueError, RecursionError) as error:  # a number of too many digits, or too many brackets, too
             place = _PLACE.match(str(error))
             message, line = (f"column {place[3]}: {place[1]}", int(place[2])) if place else (str(error), 0)
             raise film_error(file, line, message) from None
@@ -224,7 +235,9 @@ def _flat(tables: Mapping[str, Any], prefix: str = "") -> list[tuple[str, Any]]:
 
 
 def _is_number(value: Any) -> bool:
-    return isinstance(value, float | int) and not isinstance(value, bool) and math.isfinite(value)
+    if isinstance(value, bool) or not isinstance(value, float | int):
+        return False
+    return abs(value) <= sys.float_info.max  # of a whole number, too, which may be larger than any double
 
 
 def _shown(value: Any) -> str:

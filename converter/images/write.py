@@ -24,6 +24,18 @@ class ImageError(OSError):
     """A picture cannot be written; the message names the file and says why."""
 
 
+def check_ending(path: str | Path, ending: str | None = None) -> None:
+    """See that there are pictures of that ending, the given one or that of `path`.
+
+    Raises:
+        ImageError: nothing is known of it.
+    """
+    try:
+        _known(Path(path), ending)
+    except ImageError as error:
+        raise ImageError(f"{path}: {error}") from None
+
+
 def check_writable(path: str | Path, ending: str | None = None) -> None:
     """See that `write_image` could write `path`, so that no one waits for a picture that cannot be saved.
 

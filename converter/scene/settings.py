@@ -13,6 +13,9 @@ IorReading = Literal["auto", "ratio", "index"]
 Crop = tuple[int, int, int, int]
 """A part of a picture: the column and row of its first pixel, and those behind its last."""
 
+MAX_SIZE = 1_000_000
+MAX_SAMPLES = 65536
+MAX_SEED = 2**32 - 1
 MOST_THREADS = 1024
 SAMPLES = 16
 """Rays per pixel of a scene that is sampled, where nobody asks for another number."""
