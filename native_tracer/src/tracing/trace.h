@@ -23,10 +23,18 @@
 #include <vector>
 
 #include "tracing/description.h"
+#include "tracing/hits.h"
+#include "tracing/light.h"
+#include "tracing/nearest_hit.h"
 #include "tracing/observer.h"
+#include "tracing/occlusion.h"
+#include "tracing/pigment.h"
 #include "tracing/ray.h"
+#include "tracing/ray_tree.h"
+#include "tracing/rounding.h"
 #include "tracing/sampler.h"
 #include "tracing/scene.h"
+#include "tracing/surface.h"
 #include "tracing/vector.h"
 
 namespace whitted::WHITTED_ISA {
@@ -161,7 +169,7 @@ bool Tracer<Real, Observer>::trace(PrimaryRays primary_rays, Color<Sum>* sums, R
 // Traces a ray in each lane, and leaves those that follow from them on the stack.
 template <typename Real, typename Observer>
 void Tracer<Real, Observer>::trace_group(const Group<Real>& group, const View<Real>* view) {
-    const Hits<Real> hits = scene_.nearest_hit(group.rays, group.active, view);
+    const Hits<Real> hits = nearest_hit(scene_, group.rays, group.active, view);
     Color<L> color(scene_.background);
     if (any(group.active & (hits.object >= 0))) {
         const Surface<Real> surface = surface_at(group.rays, hits);
@@ -288,15 +296,15 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
         const Mask<Real> faces =
             answers & (cosine > L(least_spread<Real>)) & (distance > point_error) & ~light.grazes(hits.primitive);
 
-        Indices<Real> blocker = -1;
+        Indices<Real> occluder = -1;
         if (any(faces)) {
             counts_->shadow += static_cast<std::uint64_t>(count(faces));
             shadow_rays.direction = to_light;
             // It leads to the light from wherever the point really is.
             shadow_rays.spread = min(L(least_spread<Real>) + error * nearness, L(most_blur<Real>));
-            blocker = scene_.blocker(shadow_rays, light, distance, faces);
+            occluder = find_occluder(scene_, shadow_rays, light, distance, faces);
         }
-        const Mask<Real> lit = faces & (blocker < 0);
+        const Mask<Real> lit = faces & (occluder < 0);
         if (!Observer::observes && !any(lit)) {
             continue;
         }
@@ -310,7 +318,7 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
             specular = surface.ks * highlight(group.rays, hits, surface, to_light, cosine, shines) * intensity;
             color = select(shines, color + specular, color);
         }
-        observer_.light(group, i, surface, lit, blocker, cosine, attenuation, diffuse, specular);
+        observer_.light(group, i, surface, lit, occluder, cosine, attenuation, diffuse, specular);
     }
     return color;
 }
