@@ -273,7 +273,7 @@ class ConvexPolyhedron {
 
             const Mask<Real> entering = slope < zero;
             if constexpr (which_primitive) {
-                // No number before the first plane.
+                // NaN before the first plane.
                 const L before = origin == Origin::within ? passage.far : select(entering, passage.near, passage.far);
                 between_planes = min(abs(t - before), between_planes);
             }

@@ -128,7 +128,7 @@ class Quadric {
         Vector<L> half_gradient;  // at the origin
         Vector<L> bent_direction;
 
-        // With c = 0 one root is 0, and this is the other: no number, or infinite, if there is none.
+        // With c = 0 one root is 0, and this is the other: NaN, or infinite, if there is none.
         L other_end() const { return -(b + b) / a; }
     };
 

@@ -55,33 +55,47 @@ void order_leaves(CsgDescription& csg) {
     csg.leaves = std::move(leaves);
 }
 
-}  // namespace
+// The result that is made, of the leaves of a csg.
+class Settled {
+ public:
+    explicit Settled(const CsgDescription& csg) : csg_(csg), places_(csg.leaves.size(), -1) {}
 
-ShapeDescription simplified(const CsgDescription& csg) {
-    CsgDescription result;
-    std::vector<int> places(csg.leaves.size(), -1);
     // Puts a part's leaves into the result and writes its program in their numbers.
-    const auto settled = [&](const Part& part) {
-        std::vector<int> program;
+    std::vector<int> program_of(const Part& part) {
         if (part.polyhedron && part.program.size() > 1) {
-            result.leaves.push_back(*part.polyhedron);
-            return std::vector<int>{static_cast<int>(result.leaves.size()) - 1};
+            return {add(*part.polyhedron)};
         }
+        std::vector<int> program;
         for (const int step : part.program) {
             if (step < 0) {
                 program.push_back(step);
                 continue;
             }
-            int& place = places[static_cast<std::size_t>(step)];
+            int& place = places_[static_cast<std::size_t>(step)];
             if (place < 0) {
-                place = static_cast<int>(result.leaves.size());
-                result.leaves.push_back(csg.leaves[static_cast<std::size_t>(step)]);
+                place = add(csg_.leaves[static_cast<std::size_t>(step)]);
             }
             program.push_back(place);
         }
         return program;
-    };
+    }
 
+    CsgDescription result;
+
+ private:
+    int add(const LeafDescription& leaf) {
+        result.leaves.push_back(leaf);
+        return static_cast<int>(result.leaves.size()) - 1;
+    }
+
+    const CsgDescription& csg_;
+    std::vector<int> places_;  // of the csg's leaves in the result, or -1
+};
+
+}  // namespace
+
+ShapeDescription simplified(const CsgDescription& csg) {
+    Settled settled(csg);
     // Parts that are no polyhedra are settled already: their programs are in the result's numbers.
     std::vector<Part> stack;
     for (const int step : csg.program) {
@@ -89,7 +103,7 @@ ShapeDescription simplified(const CsgDescription& csg) {
             const auto* polyhedron = std::get_if<PolyhedronDescription>(&csg.leaves[static_cast<std::size_t>(step)]);
             Part part{{step}, polyhedron ? std::optional(*polyhedron) : std::nullopt};
             if (!polyhedron) {
-                part.program = settled(part);
+                part.program = settled.program_of(part);
             }
             stack.push_back(std::move(part));
             continue;
@@ -105,7 +119,7 @@ ShapeDescription simplified(const CsgDescription& csg) {
         }
         for (Part* part : {&left, &right}) {
             if (part->polyhedron) {
-                part->program = settled(*part);
+                part->program = settled.program_of(*part);
                 part->polyhedron.reset();
             }
         }
@@ -116,12 +130,13 @@ ShapeDescription simplified(const CsgDescription& csg) {
     if (whole.polyhedron) {
         return *whole.polyhedron;
     }
+    CsgDescription& result = settled.result;
     if (whole.program.size() == 1) {
         return std::visit([](auto& leaf) { return ShapeDescription(leaf); }, result.leaves.front());
     }
     result.program = std::move(whole.program);
     order_leaves(result);
-    return result;
+    return std::move(result);
 }
 
 }  // namespace whitted
