@@ -32,10 +32,10 @@
 #include "shapes/sight.h"
 #include "shapes/sphere.h"
 #include "shapes/start.h"
-#include "tracing/camera.h"
 #include "tracing/description.h"
 #include "tracing/ray.h"
 #include "tracing/rounding.h"
+#include "tracing/triple.h"
 #include "tracing/vector.h"
 
 namespace whitted::WHITTED_ISA {

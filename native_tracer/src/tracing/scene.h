@@ -14,12 +14,12 @@
 #include "shapes/contact.h"
 #include "shapes/shape_lists.h"
 #include "shapes/shapes.h"
-#include "tracing/camera.h"
 #include "tracing/description.h"
 #include "tracing/light.h"
 #include "tracing/pigment.h"
 #include "tracing/rounding.h"
 #include "tracing/tree.h"
+#include "tracing/triple.h"
 #include "tracing/vector.h"
 
 namespace whitted::WHITTED_ISA {
