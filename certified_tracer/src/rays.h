@@ -71,6 +71,9 @@ struct Passage {
     bool inside = false;
     int count = 0;
     std::array<Crossing<End>, 2> crossings;
+    bool last_sure = true;  // it is, which surface the last of them is on
+
+    void add(const Interval<End>& t, int surface) { crossings[static_cast<std::size_t>(count++)] = {t, surface}; }
 };
 
 template <typename End>

@@ -8,7 +8,7 @@
 #include <limits>
 #include <optional>
 
-#include "crossings.h"
+#include "bodies.h"
 #include "prepared.h"
 #include "tree.h"
 
@@ -98,7 +98,8 @@ class Search {
                     return;
                 }
                 if (found) {
-                    const int order = bodies_.order({met.t, met.surface}, {best.t, best.surface}, Reason::hit);
+                    const int order =
+                        bodies_.surfaces().order({met.t, met.surface}, {best.t, best.surface}, Reason::hit);
                     if (order > 0 || (order == 0 && best.body < body)) {
                         return;
                     }

@@ -5,7 +5,7 @@
 
 #include <vector>
 
-#include "crossings.h"
+#include "bodies.h"
 #include "prepared.h"
 #include "search.h"
 #include "shading.h"
@@ -97,7 +97,7 @@ class Tracer {
             return scene_.background;
         }
         const V point = ray.origin + met.t * ray.direction;
-        const V outward = search_.bodies().normal(met.surface, point);
+        const V outward = search_.bodies().surfaces().normal(met.surface, point);
         const V normal = met.behind ? -outward : outward;
         follow(task, met, point, normal);
         return surface_color(ray, met, point, normal);

@@ -5,15 +5,11 @@
 #include <cmath>
 #include <numbers>
 
+#include "deviations.h"
 #include "scene.h"
 #include "vector.h"
 
 namespace student {
-
-template <typename Real>
-Vector<Real> vector_of(const Triple& v) {
-    return {static_cast<Real>(v[0]), static_cast<Real>(v[1]), static_cast<Real>(v[2])};
-}
 
 // A point of the picture that the scene asks for, in pixels from its top left corner.
 struct Place {

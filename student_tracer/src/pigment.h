@@ -5,7 +5,7 @@
 #include <algorithm>
 #include <cmath>
 
-#include "camera.h"
+#include "deviations.h"
 #include "scene.h"
 #include "vector.h"
 

@@ -12,11 +12,6 @@ namespace student {
 
 enum class Kind { primary, reflected, transmitted };
 
-template <typename Real>
-Triple triple(Vector<Real> v) {
-    return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
-}
-
 struct LightRecord {
     int light;  // of the file's lamps; -1: the ambient light, where it is counted as one
     double cosine, attenuation;

@@ -7,10 +7,10 @@
 #include <vector>
 
 #include "deviations.h"
+#include "vector.h"
 
 namespace student {
 
-using Triple = std::array<double, 3>;
 using Quadruple = std::array<double, 4>;
 
 struct Camera {

@@ -9,7 +9,7 @@
 #include <cmath>
 #include <limits>
 
-#include "camera.h"
+#include "deviations.h"
 #include "scene.h"
 #include "vector.h"
 

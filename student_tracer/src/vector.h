@@ -1,8 +1,9 @@
-// Vectors and colours of three numbers.
+// Vectors and colours of three numbers, and triples of doubles, in which they are given and recorded.
 
 #pragma once
 
 #include <algorithm>
+#include <array>
 #include <cmath>
 
 namespace student {
@@ -22,6 +23,18 @@ struct Vector {
 
 template <typename Real>
 using Color = Vector<Real>;
+
+using Triple = std::array<double, 3>;
+
+template <typename Real>
+Vector<Real> vector_of(const Triple& v) {
+    return {static_cast<Real>(v[0]), static_cast<Real>(v[1]), static_cast<Real>(v[2])};
+}
+
+template <typename Real>
+Triple triple(Vector<Real> v) {
+    return {static_cast<double>(v.x), static_cast<double>(v.y), static_cast<double>(v.z)};
+}
 
 template <typename Real>
 Real dot(Vector<Real> a, Vector<Real> b) {

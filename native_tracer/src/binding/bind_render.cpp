@@ -158,7 +158,7 @@ nb::dict dict_of(const LightRecord& light) {
     nb::dict result;
     result["light"] = light.light;
     result["cosine"] = light.cosine;
-    result["shadowed_by"] = index_or_none(light.blocker);
+    result["shadowed_by"] = index_or_none(light.occluder);
     result["attenuation"] = light.attenuation;
     result["diffuse"] = tuple_of(light.diffuse);
     result["specular"] = tuple_of(light.specular);

@@ -81,7 +81,7 @@ struct Boxes {
 void add_leaf_tree(const CsgDescription& csg, int digits, CsgPlan& plan) {
     Boxes boxes;
     const double epsilon =
-        digits < std::numeric_limits<double>::digits ? epsilon_of(Precision::single) : epsilon_of(Precision::normal);
+        digits < std::numeric_limits<double>::digits ? epsilon_of(Precision::single) : epsilon_of(Precision::double_);
     const std::vector<std::optional<Bounds>> found = leaf_bounds_of(csg);
     for (std::size_t i = 0; i < csg.leaves.size(); ++i) {
         if (!boxes.add(static_cast<std::uint32_t>(i), found[i], epsilon)) {

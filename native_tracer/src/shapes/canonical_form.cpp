@@ -29,10 +29,9 @@ Real dot(const Vec& a, const Vec& b) { return a[0] * b[0] + a[1] * b[1] + a[2] *
 
 Vec column(const Matrix& matrix, std::size_t k) { return {matrix[0][k], matrix[1][k], matrix[2][k]}; }
 
-}  // namespace
-
-CanonicalForm canonical_form(const QuadricDescription& quadric) {
-    const auto& q = quadric.coefficients;
+// By what to multiply the coefficients: a power of two, so that no digit is lost, with a sign by which a quadric that
+// is turned inside out is the same.
+Real scale_of(const std::array<double, 10>& q) {
     Real largest = 0;
     for (std::size_t i = 0; i < 6; ++i) {
         largest = std::max(largest, std::abs(Real(q[i])));
@@ -40,18 +39,12 @@ CanonicalForm canonical_form(const QuadricDescription& quadric) {
     for (std::size_t i = 6; i < 9 && largest == 0; ++i) {
         largest = std::max(largest, std::abs(Real(q[i])));
     }
-    CanonicalForm form{};
-    // A power of two, so that no digit is lost, with a sign by which a quadric that is turned inside out is the same.
     const double first = *std::find_if(q.begin(), q.end(), [](double number) { return number != 0; });
-    form.scale = std::copysign(std::scalbn(Real(1), -std::ilogb(largest)), Real(first));
-    const auto scaled = [&](std::size_t i) { return form.scale * q[i]; };
-    const Matrix matrix{{{scaled(0), scaled(3) / 2, scaled(4) / 2},
-                         {scaled(3) / 2, scaled(1), scaled(5) / 2},
-                         {scaled(4) / 2, scaled(5) / 2, scaled(2)}}};
-    const Vec linear{scaled(6) / 2, scaled(7) / 2, scaled(8) / 2};
+    return std::copysign(std::scalbn(Real(1), -std::ilogb(largest)), Real(first));
+}
 
-    form.turned = q[3] != 0 || q[4] != 0 || q[5] != 0;
-    form.axes = principal_axes(matrix);
+// The bends along the axes, of which the largest is returned.
+Real find_bends(const Matrix& matrix, CanonicalForm& form) {
     Real most = 0;
     for (std::size_t i = 0; i < 3; ++i) {
         const Vec axis = column(form.axes, i);
@@ -64,22 +57,21 @@ CanonicalForm canonical_form(const QuadricDescription& quadric) {
             bend = 0;
         }
     }
+    return most;
+}
 
-    // Each axis by itself: the middle is at -linear / bend on it, and the surface is about `extent` wide there.
-    Vec along;
-    for (std::size_t i = 0; i < 3; ++i) {
-        form.linear[i] = dot(column(form.axes, i), linear);
-        along[i] = 0;
-    }
+// Each axis by itself: the middle is at -linear / bend on it, and the surface is about `extent` wide there. Returns
+// where the centre is along the axes.
+Vec find_center(Real most_bend, CanonicalForm& form) {
+    Vec along{};
     const auto center_on = [&](std::size_t i) {
         along[i] = -form.linear[i] / form.bend[i];
         form.constant += form.linear[i] * along[i];
         form.linear[i] = 0;
     };
-    form.constant = scaled(9);
     constexpr Real clearly = 0x1p-10L;
     for (std::size_t i = 0; i < 3; ++i) {
-        if (std::abs(form.bend[i]) > clearly * most) {
+        if (std::abs(form.bend[i]) > clearly * most_bend) {
             center_on(i);
         }
     }
@@ -93,12 +85,36 @@ CanonicalForm canonical_form(const QuadricDescription& quadric) {
             center_on(i);
         }
     }
-    for (std::size_t k = 0; k < 3; ++k) {
-        form.center[k] = form.axes[k][0] * along[0] + form.axes[k][1] * along[1] + form.axes[k][2] * along[2];
-        form.bend[k] *= std::copysign(Real(1), form.scale);
-        form.linear[k] *= std::copysign(Real(1), form.scale);
+    return along;
+}
+
+}  // namespace
+
+CanonicalForm canonical_form(const QuadricDescription& quadric) {
+    const auto& q = quadric.coefficients;
+    CanonicalForm form{};
+    form.scale = scale_of(q);
+    const auto scaled = [&](std::size_t i) { return form.scale * q[i]; };
+    const Matrix matrix{{{scaled(0), scaled(3) / 2, scaled(4) / 2},
+                         {scaled(3) / 2, scaled(1), scaled(5) / 2},
+                         {scaled(4) / 2, scaled(5) / 2, scaled(2)}}};
+    const Vec linear{scaled(6) / 2, scaled(7) / 2, scaled(8) / 2};
+    form.turned = q[3] != 0 || q[4] != 0 || q[5] != 0;
+    form.axes = principal_axes(matrix);
+    for (std::size_t i = 0; i < 3; ++i) {
+        form.linear[i] = dot(column(form.axes, i), linear);
     }
-    form.constant *= std::copysign(Real(1), form.scale);
+    form.constant = scaled(9);
+    const Real most_bend = find_bends(matrix, form);
+    const Vec along = find_center(most_bend, form);
+    // With the sign that it has in the file.
+    const Real sign = std::copysign(Real(1), form.scale);
+    for (std::size_t k = 0; k < 3; ++k) {
+        form.center[k] = dot(form.axes[k], along);
+        form.bend[k] *= sign;
+        form.linear[k] *= sign;
+    }
+    form.constant *= sign;
     form.scale = std::abs(form.scale);
     return form;
 }

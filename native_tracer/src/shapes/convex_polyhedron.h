@@ -12,11 +12,11 @@
 #include "shapes/crossing.h"
 #include "shapes/sight.h"
 #include "shapes/start.h"
-#include "tracing/camera.h"
 #include "tracing/description.h"
 #include "tracing/incidence.h"
 #include "tracing/ray.h"
 #include "tracing/rounding.h"
+#include "tracing/triple.h"
 #include "tracing/vector.h"
 
 namespace whitted::WHITTED_ISA {
@@ -273,7 +273,7 @@ class ConvexPolyhedron {
 
             const Mask<Real> entering = slope < zero;
             if constexpr (which_primitive) {
-                // No number before the first plane.
+                // NaN before the first plane.
                 const L before = origin == Origin::within ? passage.far : select(entering, passage.near, passage.far);
                 between_planes = min(abs(t - before), between_planes);
             }

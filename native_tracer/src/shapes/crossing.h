@@ -16,6 +16,7 @@
 #include <limits>
 
 #include "tracing/ray.h"
+#include "tracing/rounding.h"
 #include "tracing/vector.h"
 
 namespace whitted::WHITTED_ISA {
@@ -78,6 +79,14 @@ Real distance_error(const Shape& shape, const Rays<Real>& rays, int lane, int pr
     const Vector<Real> point = lane_of(rays.origin, lane) + t * direction;
     const Real error = shape.error_at(primitive, rays.reach[lane], point);
     return blur(rays, lane, error, t) / std::abs(dot(shape.outward_at(primitive, point), direction));
+}
+
+// The same, as far as ties go by it.
+template <typename Shape, typename Real>
+Real tie_error(const Shape& shape, const Rays<Real>& rays, int lane, int primitive, Real t) {
+    const Real error = distance_error(shape, rays, lane, primitive, t);
+    const Real most = most_blur<Real> * (t + rays.reach[lane]);
+    return error <= most ? error : most;  // it is NaN where the point is rounded to a sphere's centre
 }
 
 }  // namespace whitted::WHITTED_ISA

@@ -12,7 +12,6 @@
 
 #include <algorithm>
 #include <bit>
-#include <cmath>
 #include <cstddef>
 #include <cstdint>
 #include <limits>
@@ -23,21 +22,23 @@
 #include "shapes/contact.h"
 #include "shapes/convex_polyhedron.h"
 #include "shapes/crossing.h"
+#include "shapes/csg_boxes.h"
+#include "shapes/csg_expression.h"
+#include "shapes/csg_passages.h"
 #include "shapes/csg_plan.h"
+#include "shapes/csg_ties.h"
 #include "shapes/quadric.h"
 #include "shapes/shape_lists.h"
 #include "shapes/sight.h"
 #include "shapes/sphere.h"
 #include "shapes/start.h"
-#include "tracing/box_test.h"
 #include "tracing/description.h"
 #include "tracing/ray.h"
+#include "tracing/rounding.h"
+#include "tracing/triple.h"
 #include "tracing/vector.h"
 
 namespace whitted::WHITTED_ISA {
-
-template <typename Real>
-class CsgSight;
 
 // Its primitives are the leaves' in order, once as the leaf has them and once more with their other side out.
 template <typename Real>
@@ -45,14 +46,14 @@ class Csg {
  public:
     using L = Lanes<Real>;
     using Description = CsgDescription;
-    using Sight = CsgSight<Real>;
+    using Sight = BallInSight<Real>;
     using Leaves = ShapeLists<Real, Sphere<Real>, ConvexPolyhedron<Real>, Quadric<Real>>;
 
     static int primitive_count(const CsgDescription& csg) { return 2 * piece_count(csg); }
 
     [[gnu::noinline]] Csg(const CsgDescription& csg, int object, int first_primitive)
         : plan_(plan_csg(csg, std::numeric_limits<Real>::digits)),
-          space_(plan_.tree, plan_.growth, plan_.reach),
+          boxes_(plan_),
           pieces_(plan_.first_piece.back()),
           object_(object),
           first_primitive_(first_primitive) {
@@ -62,14 +63,14 @@ class Csg {
                 {lists_.add(csg.leaves[i], object, first_primitive + first), first, plan_.first_piece[i + 1]});
         }
         find_box(csg);
-        for (const BvhNode& node : plan_.tree.nodes) {
-            nodes_.push_back({space_.box(node.box), static_cast<int>(node.children), static_cast<int>(node.first),
-                              static_cast<int>(node.first + node.count)});
-        }
     }
 
     int object() const { return object_; }
     int piece(int primitive) const { return piece_of(primitive); }
+
+    // A ball that holds all, for its sight.
+    const Vector<Real>& ball_center() const { return ball_center_; }
+    Real ball_reach2() const { return ball_reach2_; }
 
     [[gnu::noinline]] Real error_at(int primitive, Real reach, const Vector<Real>& point) const {
         return lists_.visit(leaf_of(primitive).shape,
@@ -132,36 +133,11 @@ class Csg {
     }
 
  private:
-    friend class CsgSight<Real>;
+    using Event = typename CsgEvents<Real>::Event;
 
     struct Leaf {
         ShapeIndex shape;
         int first_piece, end_piece;
-    };
-
-    // What a ray's passage through a leaf leaves to be known.
-    struct Ends {
-        L near, far;
-        Indices<Real> near_primitive, far_primitive;
-        Mask<Real> inverted;
-        L between_primitives;  // the least distance between two of the leaf's own
-    };
-
-    // The passages through the leaves that some ray may meet, by the order of the leaves, and what is left of the
-    // expression without the others.
-    struct Passages {
-        Ends ends[most_csg_leaves];
-        int leaf[most_csg_leaves];   // whose they are
-        int place[most_csg_leaves];  // of those of a leaf that is left, or -1: no ray meets it
-        int count;
-        CsgStep steps[2 * most_csg_leaves];
-        int step_count;
-    };
-
-    struct Node {
-        CoarseBox<Real> box;
-        int children;  // the first of two neighbours; 0: it holds the leaves of the tree's order from first to end
-        int first, end;
     };
 
     // ---- Primitives -------------------------------------------------------------------------------------------------
@@ -180,13 +156,11 @@ class Csg {
         return leaves_[static_cast<std::size_t>(plan_.leaf_of_piece[static_cast<std::size_t>(piece_of(primitive))])];
     }
 
-    // ---- Boxes ------------------------------------------------------------------------------------------------------
-
     void find_box(const CsgDescription& csg) {
         constexpr Real infinity = std::numeric_limits<Real>::infinity();
         low_ = {-infinity, -infinity, -infinity};
         high_ = {infinity, infinity, infinity};
-        reach2_ = infinity;
+        ball_reach2_ = infinity;
         if (const std::optional<Bounds> bounds = bounds_of(csg)) {
             low_ = vector_of<Real>(bounds->box.low);
             high_ = vector_of<Real>(bounds->box.high);
@@ -194,85 +168,8 @@ class Csg {
             const Vector<Real> arm = high_ - ball_center_;
             const Real blur = 1024 * std::numeric_limits<Real>::epsilon() * static_cast<Real>(bounds->growth);
             const Real size = length(arm) + blur * (length(arm) + length(ball_center_));
-            reach2_ = size * size;
+            ball_reach2_ = size * size;
         }
-    }
-
-    // The uses of the leaves that some ray may meet, a bit each.
-    std::uint64_t uses_met(const Rays<Real>& rays, const L& limit) const {
-        std::uint64_t met = 0;
-        for (const int leaf : plan_.apart) {
-            met |= plan_.uses[static_cast<std::size_t>(leaf)];
-        }
-        if (nodes_.empty()) {
-            return met;
-        }
-        const BoxTest<Real> test(rays, space_);
-        const Coarse<Real> bound = test.bound(limit);
-        int waiting[most_csg_leaves];
-        int depth = 0;
-        waiting[depth++] = 0;
-        while (depth > 0) {
-            const Node& node = nodes_[static_cast<std::size_t>(waiting[--depth])];
-            Coarse<Real> since;
-            if (!test(node.box, bound, since)) {
-                continue;
-            }
-            if (node.children != 0) {
-                waiting[depth++] = node.children;
-                waiting[depth++] = node.children + 1;
-                continue;
-            }
-            for (int i = node.first; i < node.end; ++i) {
-                met |= plan_.uses[plan_.tree.order[static_cast<std::size_t>(i)]];
-            }
-        }
-        return met;
-    }
-
-    // Leaves out of the expression the leaves that no ray meets: they are empty, and so may be what they are part of.
-    // `met` are the uses of the others. Returns the leaves that are left, a bit each.
-    std::uint64_t reduce(std::uint64_t met, Passages& passages) const {
-        constexpr int empty = -1;
-        int stack[deepest_csg_stack];  // where each operand begins
-        int size = 0;
-        int end = 0;
-        for (std::uint64_t uses = met | plan_.needed; uses != 0; uses &= uses - 1) {
-            const auto use = static_cast<std::size_t>(std::countr_zero(uses));
-            const bool is_met = (met >> use & 1) != 0;
-            for (int i = plan_.first_step[use]; i < plan_.first_step[use + 1]; ++i) {
-                const CsgStep& step = plan_.steps[static_cast<std::size_t>(i)];
-                const bool is_leaf = step.leaf >= 0;
-                const int right = !is_leaf ? stack[--size] : is_met ? end : empty;
-                if (step.operation == CsgStep::push) {
-                    stack[size++] = right;
-                    passages.steps[end] = step;
-                    end += is_met;
-                    continue;
-                }
-                int& left = stack[size - 1];
-                if (left != empty && right != empty) {
-                    passages.steps[end++] = step;
-                } else if (step.operation == CsgDescription::unite) {
-                    if (right != empty && is_leaf) {
-                        passages.steps[end++] = {step.leaf, CsgStep::push};
-                    }
-                    left = std::max(left, right);
-                } else if (step.operation == CsgDescription::intersect || left == empty) {
-                    const int operand = std::max(left, right);
-                    end = operand == empty ? end : operand;
-                    left = empty;
-                }
-            }
-        }
-        passages.step_count = end;
-        std::uint64_t leaves = 0;
-        for (int i = 0; i < end; ++i) {
-            if (passages.steps[i].leaf >= 0) {
-                leaves |= std::uint64_t(1) << passages.steps[i].leaf;
-            }
-        }
-        return leaves;
     }
 
     // ---- Along rays -------------------------------------------------------------------------------------------------
@@ -296,12 +193,13 @@ class Csg {
         return start;
     }
 
-    void pass_leaves(const Rays<Real>& rays, const L& limit, const Start<Real>& start, Passages& passages) const {
-        const std::uint64_t leaves = reduce(uses_met(rays, limit), passages);
+    void pass_leaves(const Rays<Real>& rays, const L& limit, const Start<Real>& start,
+                     CsgPassages<Real>& passages) const {
+        reduce(plan_, boxes_.uses_met(plan_, rays, limit), passages.expression);
         const L infinity = std::numeric_limits<Real>::infinity();
         const Mask<Real> wanted = limit >= L(Real(0));
         passages.count = 0;
-        for (std::uint64_t left = leaves; left != 0; left &= left - 1) {
+        for (std::uint64_t left = passages.expression.leaves(); left != 0; left &= left - 1) {
             const int i = std::countr_zero(left);
             passages.place[i] = -1;
             const Leaf& leaf = leaves_[static_cast<std::size_t>(i)];
@@ -332,44 +230,10 @@ class Csg {
         }
     }
 
-    // The expression's value just behind distance t, and the next distance at which a leaf is met. The stack's top is
-    // not in memory: most operands are combined with it at once.
-    [[gnu::always_inline]] Mask<Real> value_behind(const Passages& passages, const L& t, L& next) const {
-        const L infinity = std::numeric_limits<Real>::infinity();
-        Mask<Real> stack[deepest_csg_stack];
-        Mask<Real> top = Mask<Real>::none();
-        int size = 0;
-        next = infinity;
-        for (int i = 0; i < passages.step_count; ++i) {
-            const CsgStep& step = passages.steps[i];
-            Mask<Real> right = Mask<Real>::none();
-            if (step.leaf < 0) {
-                right = top;
-                top = stack[--size];
-            } else if (const int place = passages.place[step.leaf]; place >= 0) {
-                const Ends& ends = passages.ends[place];
-                const Mask<Real> entered = ends.near <= t;
-                const Mask<Real> not_left = t < ends.far;
-                right = (entered & not_left) ^ ends.inverted;
-                next = min(select(entered, infinity, ends.near), next);
-                next = min(select(not_left, ends.far, infinity), next);
-            }
-            if (step.operation == CsgStep::push) {
-                stack[size++] = top;
-                top = right;
-            } else {
-                top = step.operation == CsgDescription::unite      ? top | right
-                      : step.operation == CsgDescription::subtract ? top & ~right
-                                                                   : top & right;
-            }
-        }
-        return top;
-    }
-
     // Out of line, for others' sake: it is long.
     [[gnu::noinline]] bool intersect(const Rays<Real>& rays, const L& limit, Crossing<Real>& crossing) const {
         const Start<Real> start = start_of(rays);
-        Passages passages;
+        CsgPassages<Real> passages;
         pass_leaves(rays, limit, start, passages);
         if (passages.count == 0) {
             return false;
@@ -377,17 +241,17 @@ class Csg {
         const L infinity = std::numeric_limits<Real>::infinity();
         L next;
         crossing.t = infinity;
-        crossing.inside = value_behind(passages, rays.t_min, next);
+        crossing.inside = passages.value_behind(rays.t_min, next);
         // Beyond it, but for what may tie with it, nothing is asked.
         const L last = limit + L(most_blur<Real>) * (limit + rays.reach);
         Mask<Real> open = limit >= L(Real(0));
         for (;;) {
-            open &= (next < infinity) & ~(next > last);  // it may be no number
+            open &= (next < infinity) & ~(next > last);  // it may be NaN
             if (!any(open)) {
                 break;
             }
             const L at = next;
-            const Mask<Real> changes = open & (value_behind(passages, at, next) ^ crossing.inside);
+            const Mask<Real> changes = open & (passages.value_behind(at, next) ^ crossing.inside);
             crossing.t = select(changes, at, crossing.t);
             open &= ~changes;
         }
@@ -399,7 +263,7 @@ class Csg {
     }
 
     // The primitives met at the crossings, those of the first leaves that are met there.
-    void find_primitives(const Rays<Real>& rays, const Start<Real>& start, const Passages& passages,
+    void find_primitives(const Rays<Real>& rays, const Start<Real>& start, const CsgPassages<Real>& passages,
                          Crossing<Real>& crossing) const {
         const L range = L(most_blur<Real>) * (rays.reach + crossing.t);
         const Indices<Real> other_side = pieces_;
@@ -408,7 +272,7 @@ class Csg {
         Mask<Real> close = Mask<Real>::none();
         crossing.primitive = first_primitive_;
         for (int i = 0; i < passages.count; ++i) {
-            const Ends& ends = passages.ends[i];
+            const auto& ends = passages.ends[i];
             const auto meet = [&](const L& t, const Indices<Real>& primitive, Mask<Real> enters) {
                 const Mask<Real> here = abs(t - crossing.t) <= range;
                 const Mask<Real> first = (t <= crossing.t) & (t >= crossing.t) & ~found;
@@ -428,77 +292,23 @@ class Csg {
 
     // ---- Ties -------------------------------------------------------------------------------------------------------
 
-    // A leaf is met.
-    struct Event {
-        Real t;
-        int leaf, primitive;
-        bool enters;
-    };
-
-    // Decides for one ray between places that are the same but for rounding errors. All that happens there happens at
-    // once: a film that is no thicker than the errors is none.
-    [[gnu::noinline]] void settle(const Rays<Real>& rays, const Start<Real>& start, int lane, const Passages& passages,
-                                  Crossing<Real>& crossing) const {
-        Event events[2 * most_csg_leaves];
-        int count = 0;
-        std::uint64_t inside = 0;  // of which leaves the ray is
-        for (int i = 0; i < passages.count; ++i) {
-            const Ends& ends = passages.ends[i];
-            const int leaf = passages.leaf[i];
-            const bool inverted = ends.inverted[lane];
-            bool in = inverted;
-            const auto add = [&](Real t, int primitive, bool enters) {
-                if (t <= rays.t_min[lane]) {
-                    in = enters;
-                } else if (std::isfinite(t)) {
-                    events[count++] = {t, leaf, primitive, enters};
-                }
-            };
-            if (ends.near[lane] < ends.far[lane]) {
-                add(ends.near[lane], ends.near_primitive[lane], !inverted);
-                add(ends.far[lane], ends.far_primitive[lane], inverted);
-            }
-            inside |= std::uint64_t(in) << leaf;
+    // Decides for one ray between leaves that it meets at the same place but for rounding errors.
+    [[gnu::noinline]] void settle(const Rays<Real>& rays, const Start<Real>& start, int lane,
+                                  const CsgPassages<Real>& passages, Crossing<Real>& crossing) const {
+        const auto error_of = [&](const Event& event) {
+            return tie_error(*this, rays, lane, event.primitive, event.t);
+        };
+        const auto change = CsgEvents<Real>(passages, rays, lane).first_change(plan_, error_of);
+        const Mask<Real> here = Mask<Real>::only(lane);
+        if (!change) {
+            crossing.t = select(here, L(std::numeric_limits<Real>::infinity()), crossing.t);
+            return;
         }
-        // By distance, and the first leaf first.
-        for (int i = 1; i < count; ++i) {
-            for (int k = i; k > 0 && events[k].t < events[k - 1].t; --k) {
-                const Event later = events[k - 1];
-                events[k - 1] = events[k];
-                events[k] = later;
-            }
-        }
-        crossing.t = replaced(crossing.t, lane, std::numeric_limits<Real>::infinity());
-        for (int first = 0; first < count;) {
-            int end = first + 1;
-            for (Real error = error_of(rays, lane, events[first]); end < count; ++end) {
-                const Real next_error = error_of(rays, lane, events[end]);
-                if (!(events[end].t - events[end - 1].t <= error + next_error)) {
-                    break;
-                }
-                error = next_error;
-            }
-            const bool before = value(inside);
-            std::uint64_t after = inside;
-            Real t = events[first].t;
-            for (int k = first; k < end; ++k) {
-                const bool changes = value(after ^ bit(events[k])) != value(after);
-                after ^= bit(events[k]);
-                t = changes ? events[k].t : t;
-            }
-            if (value(after) != before) {
-                const Event& met = *first_met(events + first, events + end, inside, after);
-                crossing.t = replaced(crossing.t, lane, t);
-                const int primitive = first_of_leaf(rays, start, lane, met) + (met.enters != before ? 0 : pieces_);
-                crossing.primitive = Indices<Real>::gather(
-                    [&](int other) { return other == lane ? primitive : crossing.primitive[other]; });
-                crossing.inside =
-                    Mask<Real>::gather([&](int other) { return other != lane ? crossing.inside[other] : before; });
-                return;
-            }
-            inside = after;
-            first = end;
-        }
+        const bool same_side = change->met.enters != change->before;
+        const int primitive = first_of_leaf(rays, start, lane, change->met) + (same_side ? 0 : pieces_);
+        crossing.t = select(here, L(change->t), crossing.t);
+        crossing.primitive = select(here, Indices<Real>(primitive), crossing.primitive);
+        crossing.inside = change->before ? crossing.inside | here : crossing.inside & ~here;
     }
 
     // Of the leaf's primitives that a ray meets there, the first.
@@ -512,69 +322,17 @@ class Csg {
         });
     }
 
-    static L replaced(const L& lanes, int lane, Real value) {
-        return L::gather([&](int other) { return other == lane ? value : lanes[other]; });
-    }
-
-    static std::uint64_t bit(const Event& event) { return std::uint64_t(1) << event.leaf; }
-
-    // Of events at once, the first leaf's among those that make a difference: by themselves, or by being left out.
-    const Event* first_met(const Event* begin, const Event* end, std::uint64_t before, std::uint64_t after) const {
-        const Event* first = nullptr;
-        for (const Event* event = begin; event != end; ++event) {
-            const bool matters =
-                value(before ^ bit(*event)) != value(before) || value(after ^ bit(*event)) != value(after);
-            if (matters && (first == nullptr || event->primitive < first->primitive)) {
-                first = event;
-            }
-        }
-        return first == nullptr ? begin : first;
-    }
-
-    Real error_of(const Rays<Real>& rays, int lane, const Event& event) const {
-        const Real error = distance_error(*this, rays, lane, event.primitive, event.t);
-        const Real most = most_blur<Real> * (event.t + rays.reach[lane]);
-        return error <= most ? error : most;
-    }
-
-    // The expression's value inside these leaves, its stack the bits of a number.
-    bool value(std::uint64_t inside) const {
-        std::uint64_t stack = 0;
-        for (const CsgStep& step : plan_.steps) {
-            const std::uint64_t right = (step.leaf >= 0 ? inside >> step.leaf : stack) & 1;
-            stack >>= step.leaf >= 0 ? 0 : 1;
-            if (step.operation == CsgStep::push) {
-                stack = stack << 1 | right;
-                continue;
-            }
-            const std::uint64_t left = stack & 1;
-            const std::uint64_t result = step.operation == CsgDescription::unite      ? left | right
-                                         : step.operation == CsgDescription::subtract ? left & ~right
-                                                                                      : left & right;
-            stack = stack >> 1 << 1 | result;
-        }
-        return stack != 0;
-    }
-
     CsgPlan plan_;
-    BoxSpace<Real> space_;
+    CsgBoxes<Real> boxes_;
     Leaves lists_;
     std::vector<Leaf> leaves_;
-    std::vector<Node> nodes_;  // the plan's tree
     Vector<Real> low_, high_;  // the corners of a box that holds all, or infinite
     Vector<Real> ball_center_{0, 0, 0};
-    Real reach2_;  // the square of the radius of a ball about that centre which holds all, or infinite
+    Real ball_reach2_;  // the square of the radius of a ball about that centre which holds all, or infinite
     int pieces_, object_, first_primitive_;
 };
 
 extern template class Csg<float>;  // in shapes.cpp
 extern template class Csg<double>;
-
-template <typename Real>
-class CsgSight : public BallInSight<Real> {
- public:
-    CsgSight(const Csg<Real>& csg, const Vector<Real>& point, Real extent)
-        : BallInSight<Real>(csg.ball_center_, csg.reach2_, point, extent) {}
-};
 
 }  // namespace whitted::WHITTED_ISA

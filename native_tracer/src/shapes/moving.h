@@ -17,11 +17,11 @@
 #include "shapes/shape_lists.h"
 #include "shapes/sight.h"
 #include "shapes/sphere.h"
-#include "tracing/camera.h"
 #include "tracing/description.h"
 #include "tracing/incidence.h"
 #include "tracing/ray.h"
 #include "tracing/rounding.h"
+#include "tracing/triple.h"
 #include "tracing/vector.h"
 
 namespace whitted::WHITTED_ISA {

@@ -11,17 +11,14 @@
 #include "shapes/crossing.h"
 #include "shapes/sight.h"
 #include "shapes/start.h"
-#include "tracing/camera.h"
 #include "tracing/description.h"
 #include "tracing/incidence.h"
 #include "tracing/ray.h"
 #include "tracing/rounding.h"
+#include "tracing/triple.h"
 #include "tracing/vector.h"
 
 namespace whitted::WHITTED_ISA {
-
-template <typename Real>
-class QuadricSight;
 
 // With x = the point in the axes of the canonical form, Q(x) = x.Bx + 2 l.x + k; half its gradient is Bx + l. B is
 // diagonal, and kept as a vector.
@@ -30,7 +27,7 @@ class Quadric {
  public:
     using L = Lanes<Real>;
     using Description = QuadricDescription;
-    using Sight = QuadricSight<Real>;
+    using Sight = BallInSight<Real>;
 
     static int primitive_count(const QuadricDescription&) { return 1; }
 
@@ -39,6 +36,10 @@ class Quadric {
 
     int object() const { return object_; }
     int piece(int) const { return -1; }
+
+    // A ball that holds the surface, for its sight.
+    const Vector<Real>& ball_center() const { return center_; }
+    Real ball_reach2() const { return ball_reach2_; }
 
     Real error_at(int, Real reach, const Vector<Real>& point) const {
         return error_of(reach, length(half_gradient(local<Real>(point))));
@@ -120,8 +121,6 @@ class Quadric {
     }
 
  private:
-    friend class QuadricSight<Real>;
-
     // a t^2 + 2 b t + c along rays, and what it is made of. c is 0 at the origin of rays that start on the quadric.
     struct Equation {
         L a, b, c;
@@ -129,7 +128,7 @@ class Quadric {
         Vector<L> half_gradient;  // at the origin
         Vector<L> bent_direction;
 
-        // With c = 0 one root is 0, and this is the other: no number, or infinite, if there is none.
+        // With c = 0 one root is 0, and this is the other: NaN, or infinite, if there is none.
         L other_end() const { return -(b + b) / a; }
     };
 
@@ -178,13 +177,13 @@ class Quadric {
 
     // The ball about the centre that holds the surface of an ellipsoid.
     void find_ball(const CanonicalForm& form) {
-        reach2_ = std::numeric_limits<Real>::infinity();
+        ball_reach2_ = std::numeric_limits<Real>::infinity();
         const bool all_ways = form.bend[0] * form.bend[1] > 0 && form.bend[0] * form.bend[2] > 0;
         if (has_center_ && all_ways) {
             const long double least =
                 std::min({std::abs(form.bend[0]), std::abs(form.bend[1]), std::abs(form.bend[2])});
             const auto error = static_cast<long double>(1024 * std::numeric_limits<Real>::epsilon());
-            reach2_ = static_cast<Real>((1 + error) * std::abs(form.constant) / least);
+            ball_reach2_ = static_cast<Real>((1 + error) * std::abs(form.constant) / least);
         }
     }
 
@@ -327,18 +326,11 @@ class Quadric {
     Vector<Real> axes_[3], rows_[3];  // the columns of the matrix of axes, and its rows
     Real most_bend_;
     Real center_error_, second_error_ = 0, first_error_ = 0, zeroth_error_ = 0;  // of the terms of each degree
-    Real reach2_;  // the square of the radius of a ball about the centre that holds the surface, or infinite
+    Real ball_reach2_;  // the square of the radius of a ball about the centre that holds the surface, or infinite
     int object_, primitive_;
 };
 
 extern template class Quadric<float>;  // in shapes.cpp
 extern template class Quadric<double>;
-
-template <typename Real>
-class QuadricSight : public BallInSight<Real> {
- public:
-    QuadricSight(const Quadric<Real>& quadric, const Vector<Real>& point, Real extent)
-        : BallInSight<Real>(quadric.center_, quadric.reach2_, point, extent) {}
-};
 
 }  // namespace whitted::WHITTED_ISA

@@ -40,6 +40,11 @@ class BallInSight {
     BallInSight(const Vector<Real>& center, Real reach2, const Vector<Real>& point, Real extent)
         : g_(center - point), outside2_((1 - slack) * dot(g_, g_) - (1 + slack) * larger(reach2, extent)) {}
 
+    // The shape has the ball's centre, and what reach2 is of its radius.
+    template <typename Shape>
+    BallInSight(const Shape& shape, const Vector<Real>& point, Real extent)
+        : BallInSight(shape.ball_center(), shape.ball_reach2(), point, extent) {}
+
     bool may_be_hit(const Vector<L>& direction) const { return any(may_meet(direction, L(Real(0)))); }
 
     bool may_block(const Rays<Real>& rays, L distance, Mask<Real> wanted) const {

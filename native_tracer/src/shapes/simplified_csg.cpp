@@ -55,27 +55,40 @@ void order_leaves(CsgDescription& csg) {
     csg.leaves = std::move(leaves);
 }
 
+// The result that is made, of the leaves of a csg.
+class Settled {
+ public:
+    explicit Settled(const CsgDescription& csg) : csg_(csg), places_(csg.leaves.size(), -1) {}
+
+    // Puts a polyhedron, or a part of one leaf, into the result, and gives its number there.
+    int number_of(const Part& part) {
+        if (part.polyhedron && part.program.size() > 1) {
+            return add(*part.polyhedron);
+        }
+        const auto leaf = static_cast<std::size_t>(part.program.front());
+        int& place = places_[leaf];
+        if (place < 0) {
+            place = add(csg_.leaves[leaf]);
+        }
+        return place;
+    }
+
+    CsgDescription result;
+
+ private:
+    int add(const LeafDescription& leaf) {
+        result.leaves.push_back(leaf);
+        return static_cast<int>(result.leaves.size()) - 1;
+    }
+
+    const CsgDescription& csg_;
+    std::vector<int> places_;  // of the csg's leaves in the result, or -1
+};
+
 }  // namespace
 
 ShapeDescription simplified(const CsgDescription& csg) {
-    CsgDescription result;
-    std::vector<int> places(csg.leaves.size(), -1);
-    // Puts a polyhedron, or a part of one leaf, into the result, and gives its number there.
-    const auto settled = [&](const Part& part) {
-        const auto next = static_cast<int>(result.leaves.size());
-        if (part.polyhedron && part.program.size() > 1) {
-            result.leaves.push_back(*part.polyhedron);
-            return next;
-        }
-        const auto leaf = static_cast<std::size_t>(part.program.front());
-        int& place = places[leaf];
-        if (place < 0) {
-            place = next;
-            result.leaves.push_back(csg.leaves[leaf]);
-        }
-        return place;
-    };
-
+    Settled settled(csg);
     // Parts that are no polyhedra are settled already: their programs are in the result's numbers.
     std::vector<Part> stack;
     for (const int step : csg.program) {
@@ -83,7 +96,7 @@ ShapeDescription simplified(const CsgDescription& csg) {
             const auto* polyhedron = std::get_if<PolyhedronDescription>(&csg.leaves[static_cast<std::size_t>(step)]);
             Part part{{step}, polyhedron ? std::optional(*polyhedron) : std::nullopt};
             if (!polyhedron) {
-                part.program = {settled(part)};
+                part.program = {settled.number_of(part)};
             }
             stack.push_back(std::move(part));
             continue;
@@ -99,7 +112,7 @@ ShapeDescription simplified(const CsgDescription& csg) {
         }
         for (Part* part : {&left, &right}) {
             if (part->polyhedron) {
-                part->program = {settled(*part)};
+                part->program = {settled.number_of(*part)};
                 part->polyhedron.reset();
             }
         }
@@ -110,12 +123,13 @@ ShapeDescription simplified(const CsgDescription& csg) {
     if (whole.polyhedron) {
         return *whole.polyhedron;
     }
+    CsgDescription& result = settled.result;
     if (whole.program.size() == 1) {
         return std::visit([](auto& leaf) { return ShapeDescription(leaf); }, result.leaves.front());
     }
     result.program = std::move(whole.program);
     order_leaves(result);
-    return result;
+    return std::move(result);
 }
 
 }  // namespace whitted

@@ -10,11 +10,11 @@
 #include "shapes/crossing.h"
 #include "shapes/sight.h"
 #include "shapes/start.h"
-#include "tracing/camera.h"
 #include "tracing/description.h"
 #include "tracing/incidence.h"
 #include "tracing/ray.h"
 #include "tracing/rounding.h"
+#include "tracing/triple.h"
 #include "tracing/vector.h"
 
 namespace whitted::WHITTED_ISA {

@@ -34,7 +34,7 @@ void record_pixel(const SceneDescription& scene, const RenderSettings& settings,
     switch (settings.precision) {
         case Precision::single:
             return record<float>(scene, settings, plan, pixel, color, tree);
-        case Precision::normal:
+        case Precision::double_:
             return record<double>(scene, settings, plan, pixel, color, tree);
         case Precision::extended:
             return record<long double>(scene, settings, plan, pixel, color, tree);

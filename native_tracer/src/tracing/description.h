@@ -109,7 +109,7 @@ struct SceneDescription {
 
 // ---- How to draw it -----------------------------------------------------------------------------------------------
 
-enum class Precision { single, normal, extended };  // float, double, long double
+enum class Precision { single, double_, extended };  // float, double, long double
 
 // How the objects are searched: one by one, or by a tree over their boxes; by default whichever is faster.
 enum class Search { automatic, brute, bvh };
@@ -130,7 +130,7 @@ struct RenderSettings {
     bool blinn = false;
     double cutoff = 0;
     int max_depth = 0;
-    Precision precision = Precision::normal;
+    Precision precision = Precision::double_;
     Search search = Search::automatic;
 };
 

@@ -257,7 +257,7 @@ Lanes<Real> floor(Lanes<Real> a) {
     return each<Lanes<Real>>([](auto x) { return Register<Real>::floor(x); }, a);
 }
 
-// `b` where one is no number.
+// `b` where one is NaN.
 template <typename Real>
 Lanes<Real> min(Lanes<Real> a, Lanes<Real> b) {
     return each<Lanes<Real>>([](auto x, auto y) { return Register<Real>::min(x, y); }, a, b);

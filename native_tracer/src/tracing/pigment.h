@@ -6,9 +6,9 @@
 #include <cstdint>
 #include <variant>
 
-#include "tracing/camera.h"
 #include "tracing/rounding.h"
 #include "tracing/sampler.h"
+#include "tracing/triple.h"
 #include "tracing/vector.h"
 
 namespace whitted::WHITTED_ISA {

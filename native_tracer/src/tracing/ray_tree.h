@@ -20,7 +20,7 @@ struct LightRecord {
     int light;
     double cosine;
     double attenuation;  // what the light's colour is divided by
-    int blocker;         // an object in its way; -1: none, or the surface is turned away from it
+    int occluder;        // an object in its way; -1: none, or the surface is turned away from it
     Triple diffuse, specular;
 };
 

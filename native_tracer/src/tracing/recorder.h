@@ -4,9 +4,11 @@
 
 #include <cstddef>
 
+#include "tracing/hits.h"
 #include "tracing/ray.h"
 #include "tracing/ray_tree.h"
 #include "tracing/scene.h"
+#include "tracing/surface.h"
 #include "tracing/vector.h"
 
 namespace whitted::WHITTED_ISA {
@@ -51,14 +53,14 @@ class Recorder {
 
     template <typename Real>
     void light(const Group<Real>& group, std::size_t light, const Surface<Real>& surface, Mask<Real> lit,
-               Indices<Real> blocker, Lanes<Real> cosine, Lanes<Real> attenuation, const Color<Lanes<Real>>& diffuse,
+               Indices<Real> occluder, Lanes<Real> cosine, Lanes<Real> attenuation, const Color<Lanes<Real>>& diffuse,
                const Color<Lanes<Real>>& specular) {
         const Mask<Real> answers = (surface.kd > Lanes<Real>(0)) | (surface.ks > Lanes<Real>(0));
         for_each(group, surface.hit & answers, [&](int lane, int index) {
             LightRecord record{static_cast<int>(light),
                                static_cast<double>(cosine[lane]),
                                static_cast<double>(attenuation[lane]),
-                               blocker[lane],
+                               occluder[lane],
                                {},
                                {}};
             if (lit[lane]) {

@@ -12,11 +12,13 @@
 #include <cstddef>
 #include <cstdint>
 
+#include "tracing/hits.h"
 #include "tracing/pigment.h"
 #include "tracing/ray.h"
 #include "tracing/ray_tree.h"
 #include "tracing/sampler.h"
 #include "tracing/scene.h"
+#include "tracing/surface.h"
 #include "tracing/vector.h"
 
 namespace whitted::WHITTED_ISA {
@@ -63,9 +65,9 @@ class Signer {
 
     template <typename... Arguments>
     void light(const Group<Real>& group, std::size_t light, const Surface<Real>& surface, Mask<Real>,
-               Indices<Real> blocker, const Arguments&...) {
+               Indices<Real> occluder, const Arguments&...) {
         const Mask<Real> matters = group.weight * (surface.kd + surface.ks) >= least_weight_;
-        for_each(group, surface.hit & matters & (blocker >= Indices<Real>(0)),
+        for_each(group, surface.hit & matters & (occluder >= Indices<Real>(0)),
                  [&](int lane) { return combine(path_of(group, lane), ~static_cast<std::uint32_t>(light)); });
     }
 

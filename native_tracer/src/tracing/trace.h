@@ -23,10 +23,19 @@
 #include <vector>
 
 #include "tracing/description.h"
+#include "tracing/hits.h"
+#include "tracing/light.h"
+#include "tracing/nearest_hit.h"
 #include "tracing/observer.h"
+#include "tracing/occlusion.h"
+#include "tracing/pigment.h"
 #include "tracing/ray.h"
+#include "tracing/ray_tree.h"
+#include "tracing/rounding.h"
 #include "tracing/sampler.h"
 #include "tracing/scene.h"
+#include "tracing/surface.h"
+#include "tracing/turn.h"
 #include "tracing/vector.h"
 
 namespace whitted::WHITTED_ISA {
@@ -67,20 +76,8 @@ class Tracer {
         bool too_deep = false;
     };
 
-    // Where successors lead, how far their directions may be off, and whether they travel inside.
-    struct Turn {
-        Vector<L> direction;
-        L spread;
-        Mask<Real> inside;
-    };
-
     void trace_group(const Group<Real>& group, const View<Real>* view = nullptr);
     void set_time(Group<Real>& group) const;
-    Surface<Real> surface_at(const Rays<Real>& rays, const Hits<Real>& hits) const;
-    void meet(const Object<Real>& object, int primitive, const Rays<Real>& rays, const Hits<Real>& hits,
-              Mask<Real> named, const Vector<L>& near, Surface<Real>& surface) const;
-    void meet_moving(const Object<Real>& object, int primitive, const Rays<Real>& rays, const Hits<Real>& hits,
-                     Mask<Real> named, Surface<Real>& surface) const;
     PlanePoint<Real> sample(const Group<Real>& group, std::uint32_t use) const;
     PlanePoint<Real> sample(const Group<Real>& group, Indices<Real> path, std::uint32_t use) const;
     Vector<L> to_disc(const Group<Real>& group, std::size_t light, const Vector<L>& center, L& error) const;
@@ -89,10 +86,7 @@ class Tracer {
                 L cosine, Mask<Real> wanted) const;
     void follow(const Group<Real>& group, const Hits<Real>& hits, const Surface<Real>& surface);
     [[gnu::noinline]] void spread_out(const Group<Real>& group, const Hits<Real>& hits, const Surface<Real>& surface,
-                                      std::uint32_t use, Turn& turn) const;
-    Turn mirror(const Rays<Real>& rays, const Hits<Real>& hits, const Surface<Real>& surface, L cosine) const;
-    Turn refract(const Rays<Real>& rays, const Hits<Real>& hits, const Surface<Real>& surface, L cosine,
-                 const Turn& mirrored, Mask<Real>& total) const;
+                                      std::uint32_t use, Turn<Real>& turn) const;
     Mask<Real> worthwhile(const Group<Real>& group, RayKind kind, Mask<Real> hit, L weight);
 
     const Scene<Real>& scene_;
@@ -161,10 +155,10 @@ bool Tracer<Real, Observer>::trace(PrimaryRays primary_rays, Color<Sum>* sums, R
 // Traces a ray in each lane, and leaves those that follow from them on the stack.
 template <typename Real, typename Observer>
 void Tracer<Real, Observer>::trace_group(const Group<Real>& group, const View<Real>* view) {
-    const Hits<Real> hits = scene_.nearest_hit(group.rays, group.active, view);
+    const Hits<Real> hits = nearest_hit(scene_, group.rays, group.active, view);
     Color<L> color(scene_.background);
     if (any(group.active & (hits.object >= 0))) {
-        const Surface<Real> surface = surface_at(group.rays, hits);
+        const Surface<Real> surface = surface_at(scene_, group.rays, hits, observer_);
         observer_.surface(group, scene_, hits, surface);
         color = select(surface.hit, local_color(group, hits, surface), color);
         follow(group, hits, surface);
@@ -183,77 +177,6 @@ void Tracer<Real, Observer>::set_time(Group<Real>& group) const {
     if (scene_.moves) [[unlikely]] {
         group.rays.time = sample(group, Indices<Real>(static_cast<int>(primary_path)), use::time).x;
     }
-}
-
-template <typename Real, typename Observer>
-Surface<Real> Tracer<Real, Observer>::surface_at(const Rays<Real>& rays, const Hits<Real>& hits) const {
-    const Vector<L> p = rays.origin + hits.t * rays.direction;
-    const Mask<Real> hit = hits.object >= 0;
-
-    // Neighbouring rays mostly hit the same primitive: then there is nothing to select.
-    Surface<Real> result, another;
-    bool first = true;
-    for_each_distinct(hits.primitive, hit, [&](int primitive, int lane, Mask<Real> same) {
-        const Object<Real>& object = scene_.objects[static_cast<std::size_t>(hits.object[lane])];
-        Surface<Real>& surface = first ? result : another;
-        surface.hit = hit;
-
-        const Mask<Real> named = first ? hit : same;
-        if (object.moves) [[unlikely]] {
-            meet_moving(object, primitive, rays, hits, named, surface);
-        } else {
-            meet(object, primitive, rays, hits, named, p, surface);
-        }
-
-        if (!first) {
-            merge(same, another, result);
-        }
-        first = false;
-    });
-    return result;
-}
-
-// The points that the lanes in `which` have met, near an object that stands still.
-template <typename Real, typename Observer>
-[[gnu::always_inline]] inline void Tracer<Real, Observer>::meet(const Object<Real>& object, int primitive,
-                                                                const Rays<Real>& rays, const Hits<Real>& hits,
-                                                                Mask<Real> named, const Vector<L>& near,
-                                                                Surface<Real>& surface) const {
-    const auto moved = scene_.shapes.visit(object.shape, [&](const auto& shape) __attribute__((always_inline)) {
-        return shape.surface_at(primitive, near, rays, hits.inside);
-    });
-    surface.point = moved.point;
-    surface.outward = moved.outward;
-    surface.normal = select(hits.inside, -surface.outward, surface.outward);
-    const L reach = max_norm(surface.point);
-    const L off = decides_ties<Real> ? rays.t_min + moved.error + hits.t * rays.spread : L(Real(0));
-    const L blur = L(most_blur<Real>) * (reach + hits.t);
-    // A ray that is off meets the surface farther off the more it slants.
-    const L along = min(off / abs(dot(surface.outward, rays.direction)), blur);
-    surface.error = rounding_error(reach, hits.t) + along;
-    surface.lean = moved.curvature * surface.error;
-    const Meeting<Real> met{surface.point, surface.outward, rays.direction, off, blur};
-    surface.pigment = color_at(*object.pigment, met);
-    observer_.pigment(*object.pigment, met, named);
-    const Finish<Real>& finish = object.finish;
-    surface.ka = finish.ka;
-    surface.kd = finish.kd;
-    surface.ks = finish.ks;
-    surface.alpha = finish.alpha;
-    surface.kr = finish.kr;
-    surface.kt = finish.kt;
-    surface.eta = finish.eta;
-}
-
-// Where the object stands still, and taken along from there.
-template <typename Real, typename Observer>
-[[gnu::noinline]] void Tracer<Real, Observer>::meet_moving(const Object<Real>& object, int primitive,
-                                                           const Rays<Real>& rays, const Hits<Real>& hits,
-                                                           Mask<Real> named, Surface<Real>& surface) const {
-    const Moving<Real>& moving = scene_.shapes.template at<Moving<Real>>(object.shape);
-    const Rays<Real> resting = moving.bring_back(rays);
-    meet(object, primitive, resting, hits, named, resting.origin + hits.t * resting.direction, surface);
-    moving.take_along(rays.time, surface.point, surface.error);
 }
 
 // ---- Local colour -------------------------------------------------------------------------------------------------
@@ -288,15 +211,15 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
         const Mask<Real> faces =
             answers & (cosine > L(least_spread<Real>)) & (distance > point_error) & ~light.grazes(hits.primitive);
 
-        Indices<Real> blocker = -1;
+        Indices<Real> occluder = -1;
         if (any(faces)) {
             counts_->shadow += static_cast<std::uint64_t>(count(faces));
             shadow_rays.direction = to_light;
             // It leads to the light from wherever the point really is.
             shadow_rays.spread = min(L(least_spread<Real>) + error * nearness, L(most_blur<Real>));
-            blocker = scene_.blocker(shadow_rays, light, distance, faces);
+            occluder = find_occluder(scene_, shadow_rays, light, distance, faces);
         }
-        const Mask<Real> lit = faces & (blocker < 0);
+        const Mask<Real> lit = faces & (occluder < 0);
         if (!Observer::observes && !any(lit)) {
             continue;
         }
@@ -310,7 +233,7 @@ auto Tracer<Real, Observer>::local_color(const Group<Real>& group, const Hits<Re
             specular = surface.ks * highlight(group.rays, hits, surface, to_light, cosine, shines) * intensity;
             color = select(shines, color + specular, color);
         }
-        observer_.light(group, i, surface, lit, blocker, cosine, attenuation, diffuse, specular);
+        observer_.light(group, i, surface, lit, occluder, cosine, attenuation, diffuse, specular);
     }
     return color;
 }
@@ -389,7 +312,7 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
     successors.depth = group.depth + Indices<Real>(1);
     successors.pixel = group.pixel;
     successors.record = group.record;
-    const auto push = [&](RayKind kind, Turn turn, L weight, Mask<Real> followed, RayStack<Real>& stack,
+    const auto push = [&](RayKind kind, Turn<Real> turn, L weight, Mask<Real> followed, RayStack<Real>& stack,
                           std::uint64_t& counter) {
         if (scene_.spreads) [[unlikely]] {
             const std::uint32_t use = kind == RayKind::reflected ? use::mirrored_cone : use::refracted_cone;
@@ -412,13 +335,13 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
         counter += static_cast<std::uint64_t>(count(followed));
     };
     const L cosine = -dot(group.rays.direction, surface.normal);
-    const Turn mirrored = mirror(group.rays, hits, surface, cosine);
+    const Turn<Real> mirrored = mirror(group.rays, hits, surface, cosine);
     if (any(reflects)) {
         push(RayKind::reflected, mirrored, reflected_weight, reflects, reflected_, counts_->reflected);
     }
     if (any(transmits)) {
         Mask<Real> total;
-        const Turn refracted = refract(group.rays, hits, surface, cosine, mirrored, total);
+        const Turn<Real> refracted = refract(group.rays, hits, surface, cosine, mirrored, total);
         observer_.total_reflection(group, transmits & total);
         push(RayKind::transmitted, refracted, transmitted_weight, transmits, transmitted_, counts_->transmitted);
     }
@@ -426,61 +349,17 @@ void Tracer<Real, Observer>::follow(const Group<Real>& group, const Hits<Real>& 
                       [&](int depth, int, Mask<Real>) { counts_->deepest = std::max(counts_->deepest, depth); });
 }
 
-// Directions that are uniform in the cone about those of `turn`, where the finish has one. Those that lead to the other
-// side of the surface's tangent plane are mirrored in that.
+// Where the finish has a cone.
 template <typename Real, typename Observer>
 void Tracer<Real, Observer>::spread_out(const Group<Real>& group, const Hits<Real>& hits, const Surface<Real>& surface,
-                                        std::uint32_t use, Turn& turn) const {
-    const L zero = Real(0);
+                                        std::uint32_t use, Turn<Real>& turn) const {
     const L versine = L::gather([&](int lane) {
         return hits.object[lane] < 0 ? Real(0)
                                      : scene_.objects[static_cast<std::size_t>(hits.object[lane])].finish.versine;
     });
-    const Mask<Real> spreads = versine > zero;
-    if (!any(spreads)) {
-        return;
+    if (any(versine > L(Real(0)))) {
+        spread_in_cone(surface, versine, sample(group, use), turn);
     }
-    const PlanePoint<Real> square = sample(group, use);
-    const Vector<L> direction = cone_direction(Frame<Real>(turn.direction), versine, square.x, square.y);
-    const Vector<L> normal = select(turn.inside, -surface.outward, surface.outward);
-    const L below = min(dot(normal, direction), zero);
-    turn.direction = select(spreads, normalize(direction - (L(2) * below) * normal), turn.direction);
-    // By eight times at most do the frame's axes turn faster than its axis.
-    const L spread = L(8) * turn.spread + L(2) * surface.lean;
-    turn.spread = select(spreads, min(spread, L(most_blur<Real>)), turn.spread);
-}
-
-template <typename Real, typename Observer>
-auto Tracer<Real, Observer>::mirror(const Rays<Real>& rays, const Hits<Real>& hits, const Surface<Real>& surface,
-                                    L cosine) const -> Turn {
-    return {normalize(rays.direction + L(2) * cosine * surface.normal),
-            min(rays.spread + L(2) * surface.lean + L(least_spread<Real>), L(most_blur<Real>)), hits.inside};
-}
-
-// Snell's law, with the ratio of the index on the ray's side to the index on the other: n1/n2 on the way in, n2/n1 on
-// the way out. Where it has no answer, which `total` tells, the ray follows the mirror direction.
-template <typename Real, typename Observer>
-auto Tracer<Real, Observer>::refract(const Rays<Real>& rays, const Hits<Real>& hits, const Surface<Real>& surface,
-                                     L cosine, const Turn& mirrored, Mask<Real>& total) const -> Turn {
-    const L zero = Real(0);
-    const L one = Real(1);
-    const L eta = select(hits.inside, one / surface.eta, surface.eta);
-    // 1 - eta^2 (1 - cosine^2), without the difference of nearly equal numbers where eta is nearly 1. Where it is 0 but
-    // for its error the ray is refracted along the surface.
-    const L exact_cosine2 = (one - eta) * (one + eta) + eta * cosine * (eta * cosine);
-    const L cosine_error = min(rays.spread + surface.lean, L(most_blur<Real>));
-    const L rounding = L(4 * tie_epsilon<Real>);
-    const L critical = eta * eta * (L(2) * cosine * cosine_error + rounding) + rounding;
-    const L cosine2 = select(abs(exact_cosine2) <= critical, zero, exact_cosine2);
-    const Vector<L> refracted = eta * rays.direction + (eta * cosine - sqrt(max(cosine2, zero))) * surface.normal;
-    const L length2 = dot(refracted, refracted);
-    // Of a ratio beyond all measure these may be no numbers, or 0.
-    total = ~((cosine2 >= zero) & (length2 > zero));
-    // In the plane of incidence it is more near the critical angle; across it, it is not.
-    const L steepest = L(2) * (one + eta);
-    const L spread = min(cosine_error * steepest + L(least_spread<Real>), L(most_blur<Real>));
-    return {select(total, mirrored.direction, refracted * (one / sqrt(length2))),
-            select(total, mirrored.spread, spread), select(total, hits.inside, ~hits.inside)};
 }
 
 // Which of the rays that would follow, with the given weights, are traced.

@@ -66,8 +66,9 @@ class Walks {
         using R = typename C::R;
         const C bounds = bound;
         for (int i = 0; i < width / R::lanes; ++i) {
-            const typename R::Truths entered = R::less_equal(since.value[i], bounds.value[i]) &
-                                               R::less(numbers() + i * R::lanes, typename R::Integers{} + count);
+            const typename R::Truths in_time = R::less_equal(since.value[i], bounds.value[i]);
+            const typename R::Truths is_child = R::less(numbers() + i * R::lanes, typename R::Integers{} + count);
+            const typename R::Truths entered = in_time & is_child;
             typename R::Integers numbers;
             load(children + i * R::lanes, numbers);
             R::pack(entered, since.value[i], since_[lane] + depth_[lane]);
