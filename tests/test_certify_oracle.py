@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from arb_tracer import ArbTracer
 from quadrics import SURFACES, quadric
-from tie_scenes import BLUE, GLOW, MATTE, RED, TIE_SCENES, checker, view, wall
+from tie_scenes import BLUE, EYE_SCENES, EYE_SETTINGS, GLOW, MATTE, RED, TIE_SCENES, checker, view, wall
 
 from converter.certify.certificate import certify, levels
 from converter.renderers.methods import METHODS
@@ -46,6 +46,13 @@ def test_pixels_with_ties(name: str) -> None:
     assert found.contradictions == []
     assert found.not_judged == 0
     assert found.same >= len(pixels) - 12
+
+
+@pytest.mark.parametrize("name", EYE_SCENES)
+def test_eyes_on_csgs(name: str) -> None:
+    pixels = [(x, y) for x in range(EYE_SETTINGS.width) for y in range(EYE_SETTINGS.height)]
+    found = compare(EYE_SCENES[name](), EYE_SETTINGS, pixels)
+    assert (found.same, found.contradictions) == (len(pixels), [])
 
 
 ON = {
