@@ -10,7 +10,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from tie_scenes import CLEAR, EYE_SCENES, EYE_SETTINGS, GREEN, ONE_RAY, RAYS, RED, TIE_SCENES, WHITE, traced
+from tie_scenes import CLEAR, CSG_SCENES, CSG_SETTINGS, GREEN, ONE_RAY, RAYS, RED, TIE_SCENES, WHITE, traced
 
 from converter.compare.metrics import LIMIT
 from converter.renderers.methods import METHODS
@@ -66,10 +66,10 @@ def test_small_scenes_are_drawn_by_the_rules(mi, name, method):
 
 
 @pytest.mark.parametrize("method", EXACT)
-@pytest.mark.parametrize("name", EYE_SCENES)
-def test_an_eye_on_a_csg_sees_by_the_rules(mi, name, method):
-    made = EYE_SCENES[name]()
-    wrong = disagreeing(drawn(made, EYE_SETTINGS, method), exact_picture(made, EYE_SETTINGS))
+@pytest.mark.parametrize("name", CSG_SCENES)
+def test_csgs_are_drawn_by_the_rules(mi, name, method):
+    made = CSG_SCENES[name]()
+    wrong = disagreeing(drawn(made, CSG_SETTINGS, method), exact_picture(made, CSG_SETTINGS))
     assert np.argwhere(wrong).tolist() == []
 
 

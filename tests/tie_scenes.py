@@ -316,6 +316,24 @@ def _eye_on_quadric(eye: Vector, along: Vector, up: Vector, *numbers: float):
     return _eye_in_csg(eye, along, up, ("+", body), ("&", sphere((0.25, 0.125, -0.25), 3.0)))
 
 
+CUBE = box((-1.0, -1.0, -1.0), (1.0, 1.0, 1.0))
+
+
+def _mirrored_room(*steps: tuple[str, Shape]):
+    """From within, where rays meet edges, and go on inside."""
+    body = Csg(tuple(Operand(sign, shape) for sign, shape in steps))
+    return lambda: mirrored_room(body)
+
+
+def mirrored_room(shape: Shape) -> Scene:
+    """With the eye in a cube, before a wall."""
+    bodies: list[Body] = [
+        (shape, checker(0.5), Finish(0.3, 0.0, 0.0, 1.0, 0.7, 0.0, 1.0)),
+        (wall((0.0, 0.0, 1.0), 9.0), BLUE, GLOW),
+    ]
+    return scene(view((0.0, 0.0, 0.0), (1.0, 0.0, -1.0)), bodies)
+
+
 # ---- Of one ray each
 
 
@@ -493,7 +511,7 @@ TIE_SCENES: dict[str, tuple[str, Callable[[], Scene], Settings]] = {
 """By a name: the kind of tie that it is about, how its scene is made, and settings."""
 
 
-EYE_SCENES: dict[str, Callable[[], Scene]] = {
+CSG_SCENES: dict[str, Callable[[], Scene]] = {
     "on a hollow": _eye_on_quadric((1, 0, 0), LEVEL, UP, -1, -2, -3, 0, 0, 0, 0, 0, 0, 1),
     "on a saddle": _eye_on_quadric((1, 0, 0), UP, ACROSS, 1, -1, 2, 0, 0, 0, 0, 0, 0, -1),
     "on a pipe": _eye_on_quadric((1, 0, 0.5), LEVEL, UP, 1, 2, 0, 0, 0, 0, 0, 0, 0, -1),
@@ -516,9 +534,23 @@ EYE_SCENES: dict[str, Callable[[], Scene]] = {
         ("&", sphere((0.25, 0.125, -0.25), 4.0)),
         ("-", wall((0.0, 0.0, 1.0), 0.0)),
     ),
+    "in a mirrored box": _mirrored_room(("+", CUBE)),
+    "in a mirrored box with a hole": _mirrored_room(("+", CUBE), ("-", sphere((0.0, 0.0, -1.0), 0.375))),
+    "before a mirrored notch": lambda: scene(
+        view((2.0, 0.25, 2.0), (-1.0, 0.0, -1.0)),
+        [
+            (
+                Csg((Operand("+", CUBE), Operand("-", box((0.0, -2.0, 0.0), (2.0, 2.0, 2.0))))),
+                checker(0.5),
+                Finish(0.3, 0.0, 0.0, 1.0, 0.7, 0.0, 1.0),
+            )
+        ],
+    ),
 }
-"""By a name: scenes with the eye on a csg, along whose leaf rays run, or of which leaves touch there."""
-EYE_SETTINGS = replace(SETTINGS, width=16, height=12)
+"""By a name: scenes with the eye on a csg, along whose leaf rays run, or of which leaves touch there, and with edges in
+which it is mirrored.
+"""
+CSG_SETTINGS = replace(SETTINGS, width=16, height=12)
 
 
 @cache

@@ -54,6 +54,10 @@ class Bodies {
     Met<End> located(const Met<double>& found, const R& ray) {
         Met<End> met{{}, found.body, found.surface, found.inside, found.behind};
         const S& s = surface(found.surface);
+        if (found.t.low() == 0 && found.t.high() == 0) {
+            met.t = I(0);
+            return met;
+        }
         if (s.kind == Kind::plane) {
             int side;
             if (meet_plane(s, ray, met.t, side) == 0) {
@@ -227,9 +231,7 @@ class Bodies {
             }
             return result;
         }
-        const V& p = ray.origin;
-        const I c = p.x * (q[0] * p.x + q[3] * p.y + q[4] * p.z + q[6]) + p.y * (q[1] * p.y + q[5] * p.z + q[7]) +
-                    p.z * (q[2] * p.z + q[8]) + q[9];
+        const I c = value(s, ray.origin);
         const int side = judge_.sign(c, Reason::hit);
         result.inside = side < 0;
         if (side == 0) {
@@ -272,6 +274,12 @@ class Bodies {
                                         : between_roots(index, ray, -a, -b, -c, sqrt(discriminant), -side);
         found.inside = result.inside;
         return found;
+    }
+
+    I value(const S& s, const V& p) const {
+        const auto& q = s.numbers;
+        return p.x * (q[0] * p.x + q[3] * p.y + q[4] * p.z + q[6]) + p.y * (q[1] * p.y + q[5] * p.z + q[7]) +
+               p.z * (q[2] * p.z + q[8]) + q[9];
     }
 
     V gradient(const S& s, const V& p) const {
@@ -455,6 +463,10 @@ class Bodies {
                     {passage.crossings[static_cast<std::size_t>(i)], k, i == passage.count - 1 ? second_sure_ : true});
             }
         }
+        const bool before = contains(body, bits);
+        if (ray.body == index && before != ray.inside && cross_at_start(index, body, ray, met)) {
+            return true;
+        }
         if (events.empty()) {
             return false;
         }
@@ -462,7 +474,6 @@ class Bodies {
             const double one = a.crossing.t.high_double(), other = b.crossing.t.high_double();
             return one != other ? one < other : a.crossing.surface < b.crossing.surface;
         });
-        const bool before = contains(body, bits);
         for (std::size_t first = 0; first < events.size();) {
             std::size_t last = first + 1;
             while (last < events.size() && order(events[first].crossing, events[last].crossing, Reason::hit) >= 0) {
@@ -492,6 +503,63 @@ class Bodies {
             first = last;
         }
         return false;
+    }
+
+    // A ray that starts on the body, and goes on inside or outside of it, meets what else is at an edge at once, as it
+    // does at a polyhedron's: the first surface of those by which the whole is left there, or entered.
+    bool cross_at_start(int index, const Body& body, const R& ray, Met<End>& met) {
+        const std::uint64_t turned = subtracted(body);
+        for (std::size_t k = 0; k < body.leaves.size(); ++k) {
+            const Leaf& leaf = scene_.scene.leaves[body.leaves[k]];
+            const bool leaves = ray.inside != ((turned >> k & 1) != 0);
+            int first = -1;
+            for (std::size_t i = 0; i < std::max(leaf.count, std::size_t(1)); ++i) {
+                const S& s = surface(leaf.first + i);
+                const bool start = starts_on(s, ray);
+                const int side = start ? 0 : judge_.sign(height(s, ray.origin), Reason::hit);
+                if (side > 0) {
+                    first = -1;
+                    break;  // beside the leaf
+                }
+                if (side == 0 && first < 0 && judge_.sign(slope(s, ray), Reason::hit) == (leaves ? 1 : -1)) {
+                    first = static_cast<int>(leaf.first + i);
+                }
+            }
+            if (first >= 0) {
+                met = {I(0), index, first, ray.inside, leaves};
+                return true;
+            }
+        }
+        return false;
+    }
+
+    // What is positive outside of a surface, and how that grows along a ray where it starts.
+    I height(const S& s, const V& p) const {
+        return s.kind == Kind::sphere  ? length2(p - s.vector) - square(s.number)
+               : s.kind == Kind::plane ? dot(s.vector, p) + s.number
+                                       : value(s, p);
+    }
+    I slope(const S& s, const R& ray) const {
+        return dot(s.kind == Kind::sphere  ? ray.origin - s.vector
+                   : s.kind == Kind::plane ? s.vector
+                                           : gradient(s, ray.origin),
+                   ray.direction);
+    }
+
+    // The leaves, a bit each, with which the body can only shrink.
+    static std::uint64_t subtracted(const Body& body) {
+        std::uint64_t stack = 0, leaves = 0;  // of the operands that are left to be read, backwards
+        for (std::size_t i = body.program.size(); i-- > 0;) {
+            const int step = body.program[i];
+            const std::uint64_t turned = stack & 1;
+            if (step >= 0) {
+                leaves |= turned << step;
+                stack >>= 1;
+            } else {
+                stack = stack << 1 | (turned ^ std::uint64_t(step == Body::subtract));
+            }
+        }
+        return leaves;
     }
 
     static bool contains(const Body& body, std::uint64_t bits) {
