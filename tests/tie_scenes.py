@@ -536,6 +536,7 @@ CSG_SCENES: dict[str, Callable[[], Scene]] = {
     ),
     "in a mirrored box": _mirrored_room(("+", CUBE)),
     "in a mirrored box with a hole": _mirrored_room(("+", CUBE), ("-", sphere((0.0, 0.0, -1.0), 0.375))),
+    "past a ball in a box": _eye_in_csg((0, 0, 3), LEVEL, UP, ("+", sphere((-2.0, 0.0, 0.0), 2.0)), ("&", CUBE)),
     "before a mirrored notch": lambda: scene(
         view((2.0, 0.25, 2.0), (-1.0, 0.0, -1.0)),
         [

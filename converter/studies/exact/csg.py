@@ -94,7 +94,7 @@ def _roots(along: Along, decide: Decisions) -> Iterator[Number]:
 def _crossed_at_start(node: Leaf | Node, surfaces: Sequence[Along], out: int, decide: Decisions) -> Iterator[int]:
     """Which surfaces of leaves rays cross where they start, out of the node (1) or into it (-1)."""
     if isinstance(node, Leaf):
-        if _contains(node, surfaces, 0 * surfaces[0][2], decide):
+        if all(decide.sign(surfaces[k][2]) <= 0 for k in node.surfaces):
             for k in node.surfaces:
                 _, b, c = surfaces[k]
                 if decide.sign(c) == 0 and decide.sign(b) == out:
@@ -106,9 +106,15 @@ def _crossed_at_start(node: Leaf | Node, surfaces: Sequence[Along], out: int, de
 
 def _contains(node: Leaf | Node, surfaces: Sequence[Along], t: Number, decide: Decisions) -> bool:
     if isinstance(node, Leaf):
-        return all(decide.sign((a * t + 2 * b) * t + c) <= 0 for a, b, c in map(surfaces.__getitem__, node.surfaces))
+        return all(_is_inside(surfaces[k], t, decide) for k in node.surfaces)
     whole = False
     for operation, operand in node.steps:
         if whole != (operation == "+"):  # else it changes nothing
             whole = _contains(operand, surfaces, t, decide) == (operation != "-")
     return whole
+
+
+def _is_inside(along: Along, t: Number, decide: Decisions) -> bool:
+    """Where no surface is crossed; one that is only touched there is as it is beside that."""
+    a, b, c = along
+    return (decide.sign((a * t + 2 * b) * t + c) or decide.sign(a)) <= 0
