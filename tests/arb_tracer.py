@@ -23,8 +23,6 @@ from converter.scene.settings import Settings
 PRECISION = 1024
 TIE = Fraction(1, 2**500)
 """What is nearer to 0 is a tie."""
-OUTSIDE = -1
-"""In the place of the body that a ray travels in."""
 OPERATIONS = {"+": frozenset.union, "-": frozenset.difference, "&": frozenset.intersection}
 
 
@@ -134,14 +132,16 @@ class ArbTracer:
             first += len(leaf.planes) if isinstance(leaf, Polyhedron) else 1
         return found
 
-    def _meet(self, body: int, origin: Vec, direction: Vec, within: int) -> Hit | None:
-        """Where a ray crosses a body's surface first, beyond its start; one that goes on inside a polyhedron leaves it,
-        at an edge perhaps at once.
+    def _meet(self, body: int, origin: Vec, direction: Vec, within: int | None) -> Hit | None:
+        """Where a ray crosses a body's surface first, beyond its start; one that goes on inside a polyhedron, or on a
+        side of a csg, leaves it, at an edge perhaps at once.
+
+        `within`: the body inside which it goes on where it starts, or of one that it is outside of `~body`.
         """
         shape = self._scene.objects[body].shape
         spans = [self._spans(*leaf, origin, direction) for leaf in self._bodies[body]]
         if isinstance(shape, Csg):
-            return self._meet_csg(body, shape, spans)
+            return self._meet_csg(body, shape, spans, within)
         for span in spans[0]:
             for inside, end in zip((False, True), span, strict=True):
                 if end is None:
@@ -151,7 +151,7 @@ class ArbTracer:
                     return Hit(end.t, body, end.surface, inside)
         return None
 
-    def _meet_csg(self, body: int, shape: Csg, spans: Sequence[list[Span]]) -> Hit | None:
+    def _meet_csg(self, body: int, shape: Csg, spans: Sequence[list[Span]], within: int | None) -> Hit | None:
         """By sets of the cells into which all crossings divide the line: cell k lies before the place k."""
         ends = [end for leaf in spans for span in leaf for end in span if end is not None]
         ends.sort(key=cmp_to_key(lambda a, b: self._order(a.t, b.t)))
@@ -178,10 +178,21 @@ class ArbTracer:
                 whole = OPERATIONS[operand.operation](whole, inside(operand.shape))
             return whole
 
-        within = inside(shape)
+        whole = inside(shape)
         for k, place in enumerate(places):
-            if (k in within) != (k + 1 in within) and self._sign(place[0].t) > 0:
-                return Hit(place[0].t, body, min(end.surface for end in place), k in within)
+            side = self._sign(place[0].t)
+            if side == 0 and within in (body, ~body) and (k + 1 in whole) != (within == body):
+                crossed = [
+                    end.surface
+                    for sign, leaf in zip(signs(shape), spans, strict=True)
+                    for span in leaf
+                    for way, end in zip((-sign, sign), span, strict=True)
+                    if end is not None and place_of[id(end)] == k and (way > 0) == (within == body)
+                ]
+                if crossed:
+                    return Hit(place[0].t, body, min(crossed), within == body)
+            if side > 0 and (k in whole) != (k + 1 in whole):
+                return Hit(place[0].t, body, min(end.surface for end in place), k in whole)
         return None
 
     def _spans(self, leaf: Primitive, n: "tuple[arb, ...] | arb_mat", first: int, p: Vec, d: Vec) -> list[Span]:
@@ -246,7 +257,7 @@ class ArbTracer:
 
     # ---- Rays
 
-    def _nearest(self, origin: Vec, direction: Vec, within: int) -> Hit | None:
+    def _nearest(self, origin: Vec, direction: Vec, within: int | None) -> Hit | None:
         """The first of the file of those at the same distance."""
         nearest: Hit | None = None
         for body in range(len(self._bodies)):
@@ -255,12 +266,12 @@ class ArbTracer:
                 nearest = hit
         return nearest
 
-    def _hidden(self, point: Vec, path: Vec, within: int) -> bool:
+    def _hidden(self, point: Vec, path: Vec, within: int | None) -> bool:
         """Whether a body lies between a point and the end of a path from it."""
         hits = (self._meet(body, point, path, within) for body in range(len(self._bodies)))
         return any(hit is not None and self._order(hit.t, self._one) < 0 for hit in hits)
 
-    def _color(self, origin: Vec, direction: Vec, weight: arb, depth: int, within: int = OUTSIDE) -> Vec:
+    def _color(self, origin: Vec, direction: Vec, weight: arb, depth: int, within: int | None = None) -> Vec:
         """What is seen along a ray, which travels inside a body, or outside of that where it starts."""
         hit = self._nearest(origin, direction, within)
         if hit is None:
@@ -271,7 +282,7 @@ class ArbTracer:
         normal = self._normal(hit, point)
         if self._sign(dot(normal, direction)) > 0:
             normal = scaled(normal, arb(-1))
-        side = hit.body if hit.inside else OUTSIDE
+        side = hit.body if hit.inside else ~hit.body
         pigment = self._pigment(thing.pigment, point)
         color = product(scaled(self._ambient, ka), pigment)
         if kd > 0 or ks > 0:
@@ -291,7 +302,7 @@ class ArbTracer:
             if sign >= 0:
                 root = cosine2.sqrt() if sign else self._zero
                 through = difference(scaled(direction, eta), scaled(normal, eta * across + root))
-                side = OUTSIDE if hit.inside else hit.body
+                side = ~side
             color = added(color, scaled(self._color(point, through, weight * kt, depth + 1, side), kt))
         return color
 
@@ -307,7 +318,7 @@ class ArbTracer:
         direction: Vec,
         point: Vec,
         normal: Vec,
-        within: int,
+        within: int | None,
         pigment: Vec,
         finish: Vec,
     ) -> Vec:
@@ -368,3 +379,10 @@ def primitives(shape: Shape) -> list[Primitive]:
     if not isinstance(shape, Csg):
         return [shape]
     return [leaf for operand in shape.operands for leaf in primitives(operand.shape)]
+
+
+def signs(shape: Shape, sign: int = 1) -> list[int]:
+    """Of each leaf: 1 where the whole can only grow if the leaf does, -1 where it can only shrink."""
+    if not isinstance(shape, Csg):
+        return [sign]
+    return [one for x in shape.operands for one in signs(x.shape, -sign if x.operation == "-" else sign)]

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from arb_tracer import ArbTracer
 from quadrics import SURFACES, quadric
-from tie_scenes import BLUE, GLOW, MATTE, RED, TIE_SCENES, checker, view, wall
+from tie_scenes import BLUE, CSG_SCENES, CSG_SETTINGS, GLOW, MATTE, RED, TIE_SCENES, checker, view, wall
 
 from converter.certify.certificate import certify, levels
 from converter.renderers.methods import METHODS
@@ -46,6 +46,13 @@ def test_pixels_with_ties(name: str) -> None:
     assert found.contradictions == []
     assert found.not_judged == 0
     assert found.same >= len(pixels) - 12
+
+
+@pytest.mark.parametrize("name", CSG_SCENES)
+def test_ties_of_csgs(name: str) -> None:
+    pixels = [(x, y) for x in range(CSG_SETTINGS.width) for y in range(CSG_SETTINGS.height)]
+    found = compare(CSG_SCENES[name](), CSG_SETTINGS, pixels)
+    assert (found.same, found.contradictions) == (len(pixels), [])
 
 
 ON = {

@@ -7,9 +7,25 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from tie_scenes import BLUE, CLEAR, GREEN, MIRROR, RED, SETTINGS, TIE_SCENES, checker, texmap, traced, view, wall
+from tie_scenes import (
+    BLUE,
+    CLEAR,
+    CUBE,
+    GREEN,
+    MIRROR,
+    RED,
+    SETTINGS,
+    TIE_SCENES,
+    checker,
+    mirrored_room,
+    texmap,
+    traced,
+    view,
+    wall,
+)
 
 from converter.renderers.native import NativeRenderer
+from converter.scene.model import Csg, Operand, Polyhedron
 from converter.scene.parser import load_scene
 from converter.scene.settings import Settings
 from converter.studies.exact.arithmetic import Decimals, Fractions, Undecided
@@ -116,6 +132,15 @@ def test_small_scenes_meet_their_ties(name):
 
 
 # ---- Rules
+
+
+@pytest.mark.parametrize("apart", [False, True], ids=["one leaf", "a leaf for each plane"])
+def test_a_box_keeps_rays_at_its_edges_as_a_csg_too(apart):
+    planes = [Polyhedron((plane,)) for plane in CUBE.planes] if apart else [CUBE]
+    body = Csg((Operand("+", planes[0]), *(Operand("&", plane) for plane in planes[1:])))
+    settings = Settings(8, 6, pixel="corner", max_depth=4)
+    truth = exact_picture(mirrored_room(CUBE), settings)
+    assert np.array_equal(exact_picture(mirrored_room(body), settings), truth)
 
 
 @pytest.mark.parametrize(

@@ -10,7 +10,7 @@ from types import ModuleType
 
 import numpy as np
 import pytest
-from tie_scenes import CLEAR, GREEN, ONE_RAY, RAYS, RED, TIE_SCENES, WHITE, traced
+from tie_scenes import CLEAR, CSG_SCENES, CSG_SETTINGS, GREEN, ONE_RAY, RAYS, RED, TIE_SCENES, WHITE, traced
 
 from converter.compare.metrics import LIMIT
 from converter.renderers.methods import METHODS
@@ -63,6 +63,14 @@ def test_small_scenes_are_drawn_by_the_rules(mi, name, method):
     truth = np.array([[pixel.color for pixel in row] for row in traced(name)])
     wrong = disagreeing(drawn(make(), settings, method), truth)
     assert [(x, y, truth[y, x].tolist()) for y, x in np.argwhere(wrong)] == []
+
+
+@pytest.mark.parametrize("method", EXACT)
+@pytest.mark.parametrize("name", CSG_SCENES)
+def test_csgs_are_drawn_by_the_rules(mi, name, method):
+    made = CSG_SCENES[name]()
+    wrong = disagreeing(drawn(made, CSG_SETTINGS, method), exact_picture(made, CSG_SETTINGS))
+    assert np.argwhere(wrong).tolist() == []
 
 
 @pytest.mark.parametrize("method", ["native", "native-long-double", "mitsuba-analytic"])

@@ -18,6 +18,7 @@ CLEAR = Finish(0.2, 0.0, 0.0, 1.0, 0.0, 0.7, 1.0)
 DENSE = Finish(0.0, 0.0, 0.0, 1.0, 0.0, 1.0, 0.6)
 """Its critical angle has the sine 3/5, the cosine 4/5."""
 LEVEL: Vector = (0.0, 0.0, -1.0)
+UP: Vector = (0.0, 1.0, 0.0)
 SLANTING: Vector = (3.0, 0.0, -4.0)
 """Of length 5: its frame is rational, and no double."""
 ACROSS: Vector = (4.0, 0.0, 3.0)
@@ -297,6 +298,42 @@ def _eye(eye: Vector, along: Vector = LEVEL):
     return lambda: scene(view(eye, along), bodies)
 
 
+def _eye_in_csg(eye: Vector, along: Vector, up: Vector, *steps: tuple[str, Shape]):
+    """On leaves of a csg, before walls."""
+    body = Csg(tuple(Operand(sign, shape) for sign, shape in steps))
+    bodies: list[Body] = [
+        (body, RED, GLOW),
+        (wall((0.0, 0.0, 1.0), 9.0), checker(0.5), GLOW),
+        (wall((0.0, 0.0, -1.0), 9.0), GREEN, GLOW),
+        (wall((-1.0, 0.0, 0.0), 9.0), BLUE, GLOW),
+    ]
+    return lambda: scene(view(eye, along, up), bodies)
+
+
+def _eye_on_quadric(eye: Vector, along: Vector, up: Vector, *numbers: float):
+    a, b, c, d, e, f, g, h, i, j = map(float, numbers)
+    body = Quadric((a, b, c, d, e, f, g, h, i, j))
+    return _eye_in_csg(eye, along, up, ("+", body), ("&", sphere((0.25, 0.125, -0.25), 3.0)))
+
+
+CUBE = box((-1.0, -1.0, -1.0), (1.0, 1.0, 1.0))
+
+
+def _mirrored_room(*steps: tuple[str, Shape]):
+    """From within, where rays meet edges, and go on inside."""
+    body = Csg(tuple(Operand(sign, shape) for sign, shape in steps))
+    return lambda: mirrored_room(body)
+
+
+def mirrored_room(shape: Shape) -> Scene:
+    """With the eye in a cube, before a wall."""
+    bodies: list[Body] = [
+        (shape, checker(0.5), Finish(0.3, 0.0, 0.0, 1.0, 0.7, 0.0, 1.0)),
+        (wall((0.0, 0.0, 1.0), 9.0), BLUE, GLOW),
+    ]
+    return scene(view((0.0, 0.0, 0.0), (1.0, 0.0, -1.0)), bodies)
+
+
 # ---- Of one ray each
 
 
@@ -472,6 +509,49 @@ TIE_SCENES: dict[str, tuple[str, Callable[[], Scene], Settings]] = {
     )
 }  # fmt: skip
 """By a name: the kind of tie that it is about, how its scene is made, and settings."""
+
+
+CSG_SCENES: dict[str, Callable[[], Scene]] = {
+    "on a hollow": _eye_on_quadric((1, 0, 0), LEVEL, UP, -1, -2, -3, 0, 0, 0, 0, 0, 0, 1),
+    "on a saddle": _eye_on_quadric((1, 0, 0), UP, ACROSS, 1, -1, 2, 0, 0, 0, 0, 0, 0, -1),
+    "on a pipe": _eye_on_quadric((1, 0, 0.5), LEVEL, UP, 1, 2, 0, 0, 0, 0, 0, 0, 0, -1),
+    "in a pipe's wall": _eye_on_quadric((1, 0, 0.5), LEVEL, UP, -1, -2, 0, 0, 0, 0, 0, 0, 0, 1),
+    "on a cone": _eye_on_quadric((1, 0, 1), (-1, 0, -1), UP, 1, 2, -1, 0, 0, 0, 0, 0, 0, 0),
+    "where a hole touches a wall": _eye_in_csg(
+        (0, 0, 0), (1, 0, 0), UP, ("+", wall((1.0, 0.0, 0.0), 0.0)), ("-", sphere((-1.0, 0.0, 0.0), 1.0))
+    ),
+    "where a ball touches a cut": _eye_in_csg(
+        (0, 0, 0), LEVEL, UP, ("+", sphere((0.0, -1.0, 0.0), 1.0)), ("-", box((-1.0, 0.0, -1.0), (1.0, 1.0, 1.0)))
+    ),
+    "where a ball touches its hole": _eye_in_csg(
+        (0, 0, 0), UP, LEVEL, ("+", sphere((0.0, 1.0, 0.0), 1.0)), ("-", box((-0.5, 0.0, -0.5), (0.5, 0.5, 0.5)))
+    ),
+    "where a hollow touches a cut": _eye_in_csg(
+        (0, 0, 0),
+        (1, 1, 0),
+        ACROSS,
+        ("+", Quadric((-1.0, -2.0, -3.0, 0.0, 0.0, 0.0, 0.0, 0.0, 2.0, 0.0))),
+        ("&", sphere((0.25, 0.125, -0.25), 4.0)),
+        ("-", wall((0.0, 0.0, 1.0), 0.0)),
+    ),
+    "in a mirrored box": _mirrored_room(("+", CUBE)),
+    "in a mirrored box with a hole": _mirrored_room(("+", CUBE), ("-", sphere((0.0, 0.0, -1.0), 0.375))),
+    "past a ball in a box": _eye_in_csg((0, 0, 3), LEVEL, UP, ("+", sphere((-2.0, 0.0, 0.0), 2.0)), ("&", CUBE)),
+    "before a mirrored notch": lambda: scene(
+        view((2.0, 0.25, 2.0), (-1.0, 0.0, -1.0)),
+        [
+            (
+                Csg((Operand("+", CUBE), Operand("-", box((0.0, -2.0, 0.0), (2.0, 2.0, 2.0))))),
+                checker(0.5),
+                Finish(0.3, 0.0, 0.0, 1.0, 0.7, 0.0, 1.0),
+            )
+        ],
+    ),
+}
+"""By a name: scenes with the eye on a csg, along whose leaf rays run, or of which leaves touch there, and with edges in
+which it is mirrored.
+"""
+CSG_SETTINGS = replace(SETTINGS, width=16, height=12)
 
 
 @cache

@@ -2,7 +2,9 @@
 
 #pragma once
 
+#include <algorithm>
 #include <cstddef>
+#include <cstdint>
 #include <limits>
 
 #include "csg.h"
@@ -64,6 +66,10 @@ class Bodies {
     // What another kind of intervals has found of this ray, with its own place. Throws Undecided.
     Met<End> located(const Met<double>& found, const R& ray) {
         Met<End> met{{}, found.body, found.surface, found.inside, found.behind};
+        if (found.t.low() == 0 && found.t.high() == 0) {
+            met.t = I(0);
+            return met;
+        }
         const S& s = surfaces_[found.surface];
         if (s.kind == Kind::plane) {
             int side;
@@ -113,7 +119,37 @@ class Bodies {
             const Leaf& leaf = scene_.scene.leaves[body.leaves[k]];
             way_.add(pass(leaf, ray, narrow, std::numeric_limits<double>::infinity(), false), k);
         }
+        if (ray.body == index && way_.starts_inside(body) != ray.inside && cross_at_start(index, body, ray, met)) {
+            return true;
+        }
         return way_.meet(body, index, surfaces_, met);
+    }
+
+    // A ray that starts on the body, and goes on inside or outside of it, meets what else is at an edge at once, as it
+    // does at a polyhedron's: the first surface of those by which the whole is left there, or entered.
+    bool cross_at_start(int index, const Body& body, const R& ray, Met<End>& met) const {
+        const std::uint64_t turned = subtracted(body);
+        for (std::size_t k = 0; k < body.leaves.size(); ++k) {
+            const Leaf& leaf = scene_.scene.leaves[body.leaves[k]];
+            const bool leaves = ray.inside != ((turned >> k & 1) != 0);
+            int first = -1;
+            for (std::size_t i = 0; i < std::max(leaf.count, std::size_t(1)); ++i) {
+                const S& s = surfaces_[leaf.first + i];
+                const int side = surfaces_.side_of_start(s, ray);
+                if (side > 0) {
+                    first = -1;
+                    break;  // beside the leaf
+                }
+                if (side == 0 && first < 0 && surfaces_.way_from_start(s, ray) == (leaves ? 1 : -1)) {
+                    first = static_cast<int>(leaf.first + i);
+                }
+            }
+            if (first >= 0) {
+                met = {I(0), index, first, ray.inside, leaves};
+                return true;
+            }
+        }
+        return false;
     }
 
     const PreparedScene<End>& scene_;

@@ -32,6 +32,22 @@ inline bool contains(const Body& body, std::uint64_t bits) {
     return stack & 1;
 }
 
+// The leaves, a bit each, with which the body can only shrink.
+inline std::uint64_t subtracted(const Body& body) {
+    std::uint64_t stack = 0, leaves = 0;  // of the operands that are left to be read, backwards
+    for (std::size_t i = body.program.size(); i-- > 0;) {
+        const int step = body.program[i];
+        const std::uint64_t turned = stack & 1;
+        if (step >= 0) {
+            leaves |= turned << step;
+            stack >>= 1;
+        } else {
+            stack = stack << 1 | (turned ^ std::uint64_t(step == Body::subtract));
+        }
+    }
+    return leaves;
+}
+
 // A ray's way through the leaves of a body.
 template <typename End>
 class CsgWay {
@@ -50,6 +66,9 @@ class CsgWay {
         }
     }
 
+    // Whether the ray is in the body at its start, by what is known of the leaves.
+    bool starts_inside(const Body& body) const { return contains(body, inside_); }
+
     // Where the body is met first, if it is; `index` is its own. To be called once. Throws Undecided.
     bool meet(const Body& body, int index, const Surfaces<End>& surfaces, Met<End>& met) {
         std::sort(events_.begin(), events_.end(), [](const Event& a, const Event& b) {
@@ -57,7 +76,7 @@ class CsgWay {
             return one != other ? one < other : a.crossing.surface < b.crossing.surface;
         });
         std::uint64_t inside = inside_;
-        const bool before = !events_.empty() && contains(body, inside);
+        const bool before = !events_.empty() && starts_inside(body);
         for (std::size_t first = 0; first < events_.size();) {
             const std::size_t last = end_of_tie(first, surfaces);
             std::size_t named = first;

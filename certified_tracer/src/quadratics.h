@@ -77,8 +77,7 @@ class Quadratics {
             }
             return result;
         }
-        const I c = p.x * (q[0] * p.x + q[3] * p.y + q[4] * p.z + q[6]) + p.y * (q[1] * p.y + q[5] * p.z + q[7]) +
-                    p.z * (q[2] * p.z + q[8]) + q[9];
+        const I c = surfaces_.value(s, p);
         const int side = judge_.sign(c, Reason::hit);
         if (side == 0) {
             // It starts there by rule.

@@ -65,6 +65,26 @@ class Surfaces {
         return {};
     }
 
+    // Where a ray starts: within a surface (-1), on it or beyond it (1).
+    int side_of_start(const S& s, const R& ray) const {
+        return starts_on(s, ray) ? 0 : judge_.sign(height(s, ray.origin), Reason::hit);
+    }
+
+    // Which way a ray goes that starts on a surface: inward (-1), along it or outward (1).
+    int way_from_start(const S& s, const R& ray) const {
+        const V outward = s.kind == Kind::sphere  ? ray.origin - s.vector
+                          : s.kind == Kind::plane ? s.vector
+                                                  : gradient(s, ray.origin);
+        return judge_.sign(dot(outward, ray.direction), Reason::hit);
+    }
+
+    // A quadric's value.
+    I value(const S& s, const V& p) const {
+        const auto& q = s.numbers;
+        return p.x * (q[0] * p.x + q[3] * p.y + q[4] * p.z + q[6]) + p.y * (q[1] * p.y + q[5] * p.z + q[7]) +
+               p.z * (q[2] * p.z + q[8]) + q[9];
+    }
+
     V gradient(const S& s, const V& p) const {
         const auto& q = s.numbers;
         return {I(2) * q[0] * p.x + q[3] * p.y + q[4] * p.z + q[6], I(2) * q[1] * p.y + q[3] * p.x + q[5] * p.z + q[7],
@@ -72,6 +92,13 @@ class Surfaces {
     }
 
  private:
+    // What is positive outside of a surface.
+    I height(const S& s, const V& p) const {
+        return s.kind == Kind::sphere  ? length2(p - s.vector) - square(s.number)
+               : s.kind == Kind::plane ? dot(s.vector, p) + s.number
+                                       : value(s, p);
+    }
+
     const PreparedScene<End>& scene_;
     Judge<End>& judge_;
 };

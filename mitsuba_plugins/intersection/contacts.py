@@ -36,13 +36,16 @@ LEAST_SLOPE = 2.0**-10
 
 @dataclass(frozen=True, slots=True)
 class Contact:
-    """A primitive that a point lies on: its object and shape, the outward unit normal there, and how it is bent."""
+    """A primitive that a point lies on: its object and shape, the outward unit normal there, and how it is bent, as
+    the shapes' `Contact` has it.
+    """
 
     object: int
     shape: int
     primitive: int
     normal: Vector
     curvature: float
+    turn: tuple[Vector, Vector, Vector]
 
 
 class Contacts:
@@ -67,7 +70,7 @@ class Contacts:
         Of those that move only at all times: with primitives that slide in themselves.
         """
         found = [
-            Contact(place.object, place.shape, place.primitive, at.normal, at.curvature)
+            Contact(place.object, place.shape, place.primitive, at.normal, at.curvature, at.turn)
             for kind, (places, numbers) in self._primitives.items()
             for at in kind.contacts(point, np.array(numbers, dtype=np.float64))
             for place in (places[at.row],)
@@ -98,26 +101,22 @@ class Contacts:
         surface = self._surfaces[index]
         return not surface.moves or kind.slides(np.array(surface.move), numbers)
 
-    def on_body(self, point: Numbers, contact: Contact) -> Contact | None:
-        """The contact, its normal outward, if the point is on the body; None in a face's plane beside the face.
+    def on_body(self, point: Numbers, contact: Contact) -> bool:
+        """Whether the point is on the contact's shape, and not in a face's plane beside the face.
 
         Nor is it said of a body that moves: it may be there at some times only.
         """
-        surface = self._surfaces[contact.object]
-        if surface.moves:
-            return None
-        inside = [kind.contains(point, np.array(shape.given, dtype=np.float64)) for kind, shape in surface.shapes]
-        if not isinstance(surface.solid, Csg):
-            return contact if inside[0] else None
-        below, above = (
-            surface.solid.value([side if k == contact.shape else bit for k, bit in enumerate(inside)])
-            for side in (True, False)
-        )
-        if not inside[contact.shape] or below == above:
-            return None
-        x, y, z = contact.normal
-        turned = Contact(contact.object, contact.shape, contact.primitive | INVERTED, (-x, -y, -z), contact.curvature)
-        return contact if below else turned
+        return not self._surfaces[contact.object].moves and self.sides(point, contact.object)[contact.shape]
+
+    def sides(self, point: Numbers, index: int) -> list[bool]:
+        """In which shapes of an object a point is, or on them."""
+        shapes = self._surfaces[index].shapes
+        return [kind.contains(point, np.array(shape.given, dtype=np.float64)) for kind, shape in shapes]
+
+    def value(self, index: int, sides: list[Any]) -> Any:
+        """Whether what is in these shapes of an object is in that."""
+        solid = self._surfaces[index].solid
+        return solid.value(sides) if isinstance(solid, Csg) else sides[0]
 
 
 class _Place(NamedTuple):
@@ -230,11 +229,19 @@ class EyeContact:
     """What rays from the eye start on, as rays that leave a surface do. Of several objects it is the first."""
 
     def __init__(self, types: Real, contacts: Contacts, eye: Numbers) -> None:
-        found = [on_it for contact in contacts.of(eye) if (on_it := contacts.on_body(eye, contact)) is not None]
+        found = [contact for contact in contacts.of(eye) if contacts.on_body(eye, contact)]
+        self._all = contacts
         self._contacts = [contact for contact in found if contact.object == found[0].object]
-        self._normals = [types.Vector3(*contact.normal) for contact in self._contacts]
-        self._curvature = types.Float(sum(contact.curvature for contact in self._contacts))
-        dr.make_opaque(self._normals, self._curvature)
+        self._sides = contacts.sides(eye, found[0].object) if found else []
+        self._bends = [
+            (
+                types.Vector3(*contact.normal),
+                types.Float(contact.curvature),
+                [types.Vector3(*row) for row in contact.turn],
+            )
+            for contact in self._contacts
+        ]
+        dr.make_opaque(self._bends)
 
     @property
     def exists(self) -> bool:
@@ -242,15 +249,28 @@ class EyeContact:
         return bool(self._contacts)
 
     def start(self, ray: Ray) -> Ray:
-        """A ray from the eye, with what it starts on."""
+        """A ray from the eye, with what it starts on: of several leaves of a csg, which touch there, it is the first
+        that is curved, for with planes distances can be compared.
+        """
         if not self._contacts:
             return ray
-        contact = self._contacts[0]
-        leads_inside = mi.Bool(True)
-        # Rays along a plane, too, for a body is closed; not those that touch a sphere. Eye and directions may be off.
-        bound = ray.spread if contact.curvature == 0 else -(ray.spread + ray.t_min * self._curvature)
-        for normal in self._normals:
-            leads_inside &= dr.dot(normal, ray.d) < bound
+        sides: list[Any] = [mi.Bool(side) for side in self._sides]
+        for contact, bend in zip(self._contacts, self._bends, strict=True):
+            sides[contact.shape] &= _leads_inside(ray, *bend)
+        first = min(self._contacts, key=lambda contact: contact.curvature == 0)
+        inside = self._all.value(first.object, sides)
         width = dr.width(ray.d)
-        index, primitive = (dr.opaque(mi.UInt32, number, width) for number in (contact.object, contact.primitive))
-        return Ray(ray.o, ray.d, index, primitive, leads_inside, ray.t_min, ray.spread)
+        index, primitive = (dr.opaque(mi.UInt32, number, width) for number in (first.object, first.primitive))
+        primitive ^= dr.select(sides[first.shape] != inside, mi.UInt32(INVERTED), 0)
+        return Ray(ray.o, ray.d, index, primitive, inside, ray.t_min, ray.spread)
+
+
+def _leads_inside(ray: Ray, normal: Any, curvature: Any, turn: Any) -> Any:
+    """Whether a ray from a surface leads inside of it.
+
+    So do those along a plane, or along a straight line in a quadric, for a body is closed, and those that touch from
+    within what is hollow; not those that touch a sphere. Eye and directions may be off.
+    """
+    bound = ray.spread + ray.t_min * curvature
+    bend = sum(d * dr.dot(row, ray.d) for d, row in zip(ray.d, turn, strict=True))
+    return dr.dot(normal, ray.d) < dr.select(bend > 4 * curvature * ray.spread, -bound, bound)

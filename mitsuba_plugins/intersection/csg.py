@@ -12,7 +12,7 @@ from typing import Any
 import drjit as dr
 
 from mitsuba_plugins.intersection.passages import Crossing
-from mitsuba_plugins.intersection.rays import Ray
+from mitsuba_plugins.intersection.rays import INVERTED, Ray
 from mitsuba_plugins.intersection.shapes.kind import Row, Rows, Shape, ShapeKind
 
 UNION, DIFFERENCE, INTERSECTION = -1, -2, -3
@@ -76,9 +76,10 @@ def side_of_sheet(if_inside: Any, if_outside: Any, ray: Ray) -> tuple[Any, Any]:
     """On which side of the sheet that it starts on a ray travels, and whether it starts inside the csg.
 
     The leaves that it starts on share a sheet. The side follows from that of the csg: it is the one on which, all other
-    leaves as they are, the value is that.
+    leaves as they are, the value is that. Where the value is that on both, the mark of the primitive tells the side.
     """
-    inside_sheet = dr.select(if_inside != if_outside, ray.inside == if_inside, ray.inside)
+    marked_side = ray.inside ^ (ray.primitive >= INVERTED)
+    inside_sheet = dr.select(if_inside != if_outside, ray.inside == if_inside, marked_side)
     return inside_sheet, dr.select(inside_sheet, if_inside, if_outside)
 
 

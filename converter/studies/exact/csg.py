@@ -38,8 +38,10 @@ class Met(NamedTuple):
     tied: bool
 
 
-def first_met(node: Node, surfaces: Sequence[Along], decide: Decisions) -> Met | None:
-    """The first change beyond the ray's start."""
+def first_met(node: Node, surfaces: Sequence[Along], decide: Decisions, inside: bool | None = None) -> Met | None:
+    """The first change beyond the ray's start. A ray that starts on the whole, and goes on `inside` or outside of it,
+    meets what else is at an edge at once, as it does at a polyhedron's.
+    """
 
     def order(one: tuple[Number, int], other: tuple[Number, int]) -> int:
         return decide.sign(one[0] - other[0])
@@ -54,6 +56,12 @@ def first_met(node: Node, surfaces: Sequence[Along], decide: Decisions) -> Met |
             groups[-1].append(crossing)
         else:
             groups.append([crossing])
+    if inside is not None:
+        ahead = groups[0][0][0] / 2 if groups else 1 + 0 * surfaces[0][2]
+        if _contains(node, surfaces, ahead, decide) != inside:
+            crossed = list(_crossed_at_start(node, surfaces, 1 if inside else -1, decide))
+            if crossed:
+                return Met(0 * ahead, crossed[0], inside, len(crossed) > 1)
     if not groups:
         return None
     distances = [group[0][0] for group in groups]
@@ -83,11 +91,30 @@ def _roots(along: Along, decide: Decisions) -> Iterator[Number]:
             decide.note("tangent")
 
 
+def _crossed_at_start(node: Leaf | Node, surfaces: Sequence[Along], out: int, decide: Decisions) -> Iterator[int]:
+    """Which surfaces of leaves rays cross where they start, out of the node (1) or into it (-1)."""
+    if isinstance(node, Leaf):
+        if all(decide.sign(surfaces[k][2]) <= 0 for k in node.surfaces):
+            for k in node.surfaces:
+                _, b, c = surfaces[k]
+                if decide.sign(c) == 0 and decide.sign(b) == out:
+                    yield k
+        return
+    for operation, operand in node.steps:
+        yield from _crossed_at_start(operand, surfaces, -out if operation == "-" else out, decide)
+
+
 def _contains(node: Leaf | Node, surfaces: Sequence[Along], t: Number, decide: Decisions) -> bool:
     if isinstance(node, Leaf):
-        return all(decide.sign((a * t + 2 * b) * t + c) <= 0 for a, b, c in map(surfaces.__getitem__, node.surfaces))
+        return all(_is_inside(surfaces[k], t, decide) for k in node.surfaces)
     whole = False
     for operation, operand in node.steps:
         if whole != (operation == "+"):  # else it changes nothing
             whole = _contains(operand, surfaces, t, decide) == (operation != "-")
     return whole
+
+
+def _is_inside(along: Along, t: Number, decide: Decisions) -> bool:
+    """Where no surface is crossed; one that is only touched there is as it is beside that."""
+    a, b, c = along
+    return (decide.sign((a * t + 2 * b) * t + c) or decide.sign(a)) <= 0

@@ -293,7 +293,7 @@ class CsgBody:
             decide.note("at start")
         if any(decide.sign(a) == decide.sign(b) == 0 for a, b, _ in along):
             decide.note("along")
-        met = first_met(self.node, along, decide)
+        met = first_met(self.node, along, decide, ray.inside if ray.object == index else None)
         if met is None:
             return None
         if met.tied:

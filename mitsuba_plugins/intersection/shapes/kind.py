@@ -62,6 +62,8 @@ class Contact(NamedTuple):
     """The outward unit normal there."""
     curvature: float
     """How much the normal turns along a unit of length, at most; 0 of a plane."""
+    turn: tuple[Vector, Vector, Vector]
+    """By rows, the matrix that takes a way to what the normal turns by along it, but for what is along the normal."""
 
 
 @dataclass

@@ -35,7 +35,7 @@ def contacts(point: Any, rows: Any) -> list[Contact]:
         # The square of a length may neither overflow nor vanish.
         normal = normal / np.abs(normal).max()
         x, y, z = (normal / np.linalg.norm(normal)).tolist()
-        found.append(Contact(row, (x, y, z), 0.0))
+        found.append(Contact(row, (x, y, z), 0.0, ((0.0,) * 3,) * 3))
     return found
 
 

@@ -174,8 +174,9 @@ def _contact(point: Any, numbers: Any, k: int) -> Contact | None:
     normal = np.array([float(h / steepest) for h in half])
     length = float(np.linalg.norm(normal))
     x, y, z = (normal / length).tolist()
-    bend = math.sqrt(sum(float(q) ** 2 for row in form.matrix for q in row))
-    return Contact(k, (x, y, z), bend / (float(steepest) * length))
+    turn = np.array(form.matrix, dtype=np.float64) / (float(steepest) * length)
+    rows = [(x, y, z) for x, y, z in turn.tolist()]
+    return Contact(k, (x, y, z), float(np.linalg.norm(turn)), (rows[0], rows[1], rows[2]))
 
 
 # ---- In a kernel -----------------------------------------------------------------------------------------------------

@@ -34,7 +34,8 @@ def contacts(point: Any, rows: Any) -> list[Contact]:
         # The square of a length may neither overflow nor vanish.
         arm = arm / np.abs(arm).max()
         x, y, z = (arm / np.linalg.norm(arm)).tolist()
-        found.append(Contact(row, (x, y, z), 1 / float(rows[row, 3])))
+        bend = 1 / float(rows[row, 3])
+        found.append(Contact(row, (x, y, z), bend, ((bend, 0.0, 0.0), (0.0, bend, 0.0), (0.0, 0.0, bend))))
     return found
 
 

@@ -226,8 +226,14 @@ class ConvexPolyhedron {
         for (int k = 0; k < plane_count(); ++k) {
             const auto index = static_cast<std::size_t>(k);
             if (lies_on(polyhedron.planes[index], point)) {
-                visit(Contact<Real>{object_, first_primitive_ + k, planes_[index].normal, Real(0), true,
-                                    lies_within(polyhedron.planes, point), first_primitive_});
+                visit(Contact<Real>{object_,
+                                    first_primitive_ + k,
+                                    planes_[index].normal,
+                                    Real(0),
+                                    {},
+                                    true,
+                                    lies_within(polyhedron.planes, point),
+                                    first_primitive_});
             }
         }
     }

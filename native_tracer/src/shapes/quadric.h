@@ -115,7 +115,14 @@ class Quadric {
         const Vector<Real> gradient = half_gradient(local<Real>(vector_of<Real>(point)));
         const Real size = length(gradient);
         if (size > 0) {
-            visit(Contact<Real>{object_, primitive_, to_space(gradient) / size, most_bend_ / size, false, true,
+            const auto turn = [&](const Vector<Real>& axis) { return to_space(bend_ * to_axes(axis)) / size; };
+            visit(Contact<Real>{object_,
+                                primitive_,
+                                to_space(gradient) / size,
+                                most_bend_ / size,
+                                {turn({1, 0, 0}), turn({0, 1, 0}), turn({0, 0, 1})},
+                                false,
+                                true,
                                 primitive_});
         }
     }

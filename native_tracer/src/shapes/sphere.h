@@ -100,7 +100,14 @@ class Sphere {
     void for_each_contact(const SphereDescription& sphere, const Triple& point, Visit visit) const {
         if (lies_on(sphere, point)) {
             const Vector<Real> arm = vector_of<Real>(in_range(direction(sphere.center, point)));
-            visit(Contact<Real>{ball_.object(), ball_.primitive(), normalize(arm), 1 / ball_.radius(), false, true,
+            const Real bend = 1 / ball_.radius();
+            visit(Contact<Real>{ball_.object(),
+                                ball_.primitive(),
+                                normalize(arm),
+                                bend,
+                                {{bend, 0, 0}, {0, bend, 0}, {0, 0, bend}},
+                                false,
+                                true,
                                 ball_.primitive()});
         }
     }

@@ -146,6 +146,7 @@ void Scene<Real>::add_eye(const SceneDescription& description) {
             eye_contact.primitive = contact.primitive;
             eye_contact.body = contact.body;
             eye_contact.curvature = contact.curvature;
+            eye_contact.turn = contact.turn;
         }
         if (contact.body >= 0 && contact.body == eye_contact.body) {
             eye_contact.outward.push_back(contact.outward);
