@@ -1,5 +1,6 @@
 """Pictures drawn by workers of Dask: the same bytes, whatever happens to the workers."""
 
+import gc
 import os
 import signal
 import threading
@@ -214,6 +215,8 @@ def test_usage(whitted, tmp_path, monkeypatch, options, message):
     assert status == 2
     assert err.startswith(f"whitted render: {message}")
     assert not list(tmp_path.iterdir())
+    # One that is collected later, in a thread that Dask starts, waits for that thread, which waits for it.
+    assert not [each for each in gc.get_objects() if isinstance(each, Client) and each.status != "closed"]
 
 
 def test_workers_of_our_own(tmp_path):

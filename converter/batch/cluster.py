@@ -5,6 +5,7 @@ keeps where they are needed, and makes again where a worker is lost. Textures tr
 need none of our files. Few pictures are asked for at a time, so that few wait here to be written.
 """
 
+import gc
 import logging
 import math
 import signal
@@ -78,12 +79,7 @@ def cluster(workers: int | None, scheduler: str | None, quiet: bool) -> Iterator
         if name.startswith("distributed"):
             logging.getLogger(name).setLevel(logging.CRITICAL + 1)
     if scheduler is not None:
-        try:
-            with warnings.catch_warnings(action="ignore"):  # of other versions of what does not matter
-                client = Client(scheduler, timeout=PATIENCE)
-        except Exception as error:  # Dask has many for addresses that are none, or need what is not set up
-            raise ClusterError(f"--scheduler: nothing answers at {scheduler!r}: {error}") from error
-        with client:
+        with _connected(Client, scheduler) as client:
             say(f"note: the workers of {client.scheduler.address} draw{_dashboard(client)}", quiet)
             if not client.nthreads():
                 say("note: there are no workers yet; those that come draw", quiet)
@@ -104,6 +100,19 @@ def cluster(workers: int | None, scheduler: str | None, quiet: bool) -> Iterator
         if find_spec("bokeh"):
             say(f"note: {count} workers draw{_dashboard(client)}", quiet)
         yield Cluster(client, max(1, available_cores() // count))
+
+
+def _connected(make: Callable[..., Any], address: str) -> Any:
+    """A client of the scheduler at an address."""
+    try:
+        with warnings.catch_warnings(action="ignore"):  # of other versions of what does not matter
+            return make(address, timeout=PATIENCE)
+    except Exception as error:  # Dask has many for addresses that are none, or need what is not set up
+        told = str(error)
+    # A client that has failed closes itself when it is collected. In a thread of Dask's that starts meanwhile, it would
+    # wait for that thread.
+    gc.collect()
+    raise ClusterError(f"--scheduler: nothing answers at {address!r}: {told}")
 
 
 def _started(make: Callable[..., Any], **options: Any) -> Any:
