@@ -40,12 +40,11 @@ def run(script, folder, walls=NONE, limits=LIMITS, seen=()):
         ("timeout 20 sh -c 'while :; do :; done'", "ended after 0.5 s of processor time"),
         ("for k in 1 2; do timeout 20 sh -c 'while :; do :; done' & done; wait", "ended after 0.5 s of processor time"),
         ("trap '' TERM INT HUP; sleep 60 & wait; sleep 60", "did not end itself"),
-        ("b() { [ $1 = 0 ] || { b $(($1 - 1)) & b $(($1 - 1)) & }; sleep 2; }; b 7", "40 processes and threads"),
         ("timeout 20 yes", "4 MiB of output"),
         ("yes | head -c 100000000 > out.ppm", "4 MiB of output"),
         ("for k in 1 2 3 4; do yes | head -c 3000000 > $k & done; wait; sleep 1", "4 MiB of output"),
     ],
-    ids=["well", "status", "crash", "loop", "loops", "sleep", "bomb", "talk", "file", "files"],
+    ids=["well", "status", "crash", "loop", "loops", "sleep", "talk", "file", "files"],
 )
 def test_endings_are_told(script, expected, walls, tmp_path):
     ending = run(script, tmp_path, walls)
@@ -59,6 +58,29 @@ def test_too_much_memory_is_told(walls, tmp_path):
     limits = replace(LIMITS, seconds=20)  # to fill it takes some time on a machine that is busy
     ending = run("head -c 600000000 /dev/zero | tail -n 1", tmp_path, walls, limits)
     assert "150 MiB of memory" in told(ending, limits)
+
+
+BOMB = "b() { [ $1 = 0 ] || { b $(($1 - 1)) & b $(($1 - 1)) & }; sleep 5; }; b 7"
+
+
+@walls
+def test_too_many_processes_are_told(walls, tmp_path):
+    limits = replace(LIMITS, seconds=20)  # to start them takes some time, too
+    assert told(run(BOMB, tmp_path, walls, limits), limits) == "ended at more than 40 processes and threads"
+
+
+def test_looks_that_have_to_wait_are_not_rarer(tmp_path):
+    order = {"command": ["/bin/sleep", "2"], "folder": str(tmp_path), "environment": {}, "cores": CORES}
+    order |= {"seconds": 20, "clock_seconds": 60, "memory": 1 << 30, "tasks": 40, "files": 100, "output": 1 << 20}
+    script = (
+        "import time; from converter.grade import warden\n"
+        "look, looks = warden._Watch._look, []\n"
+        "warden._Watch._look = lambda *it: looks.append(time.sleep(0.1)) or look(*it)\n"
+        f"warden.run(warden.Order(**{order}))\n"
+        "print(len(looks))"
+    )
+    looks = subprocess.run([sys.executable, "-c", script], capture_output=True, text=True, check=True).stdout
+    assert int(looks) > 3  # one, if a look's cost were the time that it waits
 
 
 def test_times_are_those_of_the_program_and_its_children(tmp_path):

@@ -29,7 +29,7 @@ _SUBREAPER = 36  # PR_SET_CHILD_SUBREAPER of <sys/prctl.h>
 _LOOKS = 0.02
 """Seconds between two looks at the processes, at least."""
 _COST = 20
-"""A look takes at most about one in so many parts of the time."""
+"""A look takes at most about one in so many parts of a processor's time."""
 _FOLDER_EVERY = 5
 """Looks between two at what has been written."""
 _TOLD = 16384
@@ -193,8 +193,9 @@ class _Watch:
                     break
                 now = time.monotonic()
                 if now >= look:
+                    spent = time.process_time()  # by the clock, looks would be rare on a machine that is busy
                     self.ending.beyond = self.ending.beyond or self._look(now - self.started)
-                    look = time.monotonic() + max(_LOOKS, _COST * (time.monotonic() - now))
+                    look = time.monotonic() + max(_LOOKS, _COST * (time.process_time() - spent))
                 if self.ending.beyond:
                     self.ending.clock = now - self.started
                     break
