@@ -2,6 +2,7 @@
 
 import signal
 
+import hypothesis
 import pytest
 import variant
 from command_scenes import SCENE
@@ -12,6 +13,13 @@ from converter.scene.model import Camera, Checker, Finish, Light, Object, Polyhe
 if signal.getsignal(signal.SIGINT) is signal.SIG_IGN:
     # A shell has it so in what runs in the background, where tests of Ctrl-C would wait for ever.
     signal.signal(signal.SIGINT, signal.default_int_handler)
+
+
+# The same examples each time, and as much time as a busy machine takes: `make fuzz` is what looks for new ones.
+hypothesis.settings.register_profile(
+    "same", derandomize=True, deadline=None, suppress_health_check=[hypothesis.HealthCheck.too_slow]
+)
+hypothesis.settings.load_profile("same")
 
 
 def pytest_addoption(parser):
