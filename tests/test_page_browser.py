@@ -88,6 +88,33 @@ def test_a_mistake_is_underlined_told_and_gone_when_mended(page):
     assert "old" not in page.get_attribute("#native", "class")
 
 
+def test_a_picture_that_comes_after_a_mistake_is_shown_as_old(browser, server, page):
+    """It is of a text before."""
+    frames = []
+
+    def through(socket):
+        def told(message):
+            socket.send(message)
+            if isinstance(message, bytes):
+                frames.append(message)
+            elif '"marks": [{' in message:
+                socket.send(frames[-1])
+                socket.send('{"type": "said", "message": "late"}')
+
+        socket.connect_to_server().on_message(told)
+
+    other = browser.new_context(viewport={"width": 1400, "height": 900}).new_page()
+    other.route_web_socket(re.compile("/live$"), through)
+    other.goto(server.address)
+    settle(other)
+    type_after(other, "sphere 0 32.7 0 20", "x")
+    wait_until(other, "document.querySelector('#said').textContent === 'late'")
+    assert "old" in other.get_attribute("#native", "class")
+    other.keyboard.press("Backspace")
+    settle(other)
+    other.context.close()
+
+
 def test_a_click_shows_the_rays_of_both_renderers_and_their_path(page):
     box = page.locator(CANVAS).first.bounding_box()
     page.mouse.click(box["x"] + 83.5, box["y"] + 50.5)  # the middle ball

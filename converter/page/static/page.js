@@ -19,6 +19,7 @@ let heard = 0; // and of the last one that the server has heard
 let offline = false; // typed while there was no server
 let elsewhere = false; // the file has changed elsewhere, and so has the text here
 let version = 0; // of the text that the server has
+let wrong = false; // the text has mistakes
 let number = null; // under the cursor
 let sliding = false;
 
@@ -70,7 +71,8 @@ const shown = {
     if (omitted) items.push(listItem(`... and ${omitted} more`));
     element("mistakes").replaceChildren(...items);
     element("notes").replaceChildren();
-    native.figure.classList.toggle("old", marks.length > 0);
+    wrong = marks.length > 0;
+    native.figure.classList.toggle("old", wrong);
   },
 
   notes({ version: of, notes }) {
@@ -79,6 +81,7 @@ const shown = {
 
   native(frame) {
     native.show(frame);
+    native.figure.classList.toggle("old", wrong); // it may come after what is told of a newer text
     const size = frame.whole ? "" : ", small first";
     native.tell(`native, ${(1000 * frame.seconds).toFixed(0)} ms${size}${frame.note ? `: ${frame.note}` : ""}`);
   },
