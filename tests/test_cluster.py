@@ -122,6 +122,33 @@ def test_killed_workers_cost_time_only(scheduler):
     assert all(found[k] == draw_picture(wanted[k].job, Picture()).data for k in (0, 19, 21, 59))
 
 
+def test_what_a_worker_had_drawn_when_it_died_is_waited_for():
+    """However long it takes others to draw it again."""
+    answers = [TimeoutError(), TimeoutError(), ["drawn"]]
+
+    def result(timeout):
+        if isinstance(answer := answers.pop(0), Exception):
+            raise answer
+        return answer
+
+    future = Namespace(result=result, status="pending")
+    assert dask._results(Namespace(status="running"), future, 1) == ["drawn"]
+    answers.append(TimeoutError())
+    with pytest.raises(dask.ClusterError, match="the scheduler is gone"):
+        dask._results(Namespace(status="closed"), future, 1)
+
+
+def test_a_worker_that_waits_in_vain_says_so(scheduler):
+    """For a disk, say: its own timeout is none of ours."""
+    with Client(scheduler, set_as_default=False) as client:
+        future = client.submit(_wait_in_vain, pure=False)
+        assert [str(error) for error in dask._results(client, future, 2)] == ["the disk does not answer"] * 2
+
+
+def _wait_in_vain():
+    raise TimeoutError("the disk does not answer")
+
+
 def test_workers_may_come_later(whitted, tmp_path, monkeypatch):
     """They are waited for, and each that comes has something to do."""
     monkeypatch.setattr(dask, "COUNTING_SECONDS", 0.0)

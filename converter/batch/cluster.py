@@ -174,7 +174,7 @@ def drawn_by(found: Cluster, wanted: Iterable[Wanted], count: int, progress: Pro
             return
         for future in _finished(found.client, list(waiting)):
             group = waiting.pop(future)
-            results = _results(future, len(group))
+            results = _results(found.client, future, len(group))
             for (tiled, place, _), result in zip(group, results, strict=True):
                 if isinstance(result, Drawn):
                     seconds, drawn = seconds + sum(result.seconds.values()), drawn + 1
@@ -321,18 +321,25 @@ def _gone() -> ClusterError:
     return ClusterError("the scheduler is gone; what is drawn is kept, and the same command goes on from there")
 
 
-def _results(future: Any, count: int) -> list[Drawn | Exception]:
+def _results(client: Any, future: Any, count: int) -> list[Drawn | Exception]:
     from distributed import KilledWorker
     from distributed.client import FutureCancelledError
 
-    try:
-        return future.result(timeout=PATIENCE)  # type: ignore[no-any-return]
-    except FutureCancelledError as error:
-        raise _gone() from error
-    except KilledWorker:
-        return [ClusterError("workers die of this picture: have they enough memory?")] * count
-    except Exception as error:
-        return [error] * count
+    while True:
+        try:
+            return future.result(timeout=PATIENCE)  # type: ignore[no-any-return]
+        except TimeoutError as error:
+            if future.status == "error":  # it is the worker's
+                return [error] * count
+            if client.status != "running":
+                raise _gone() from None
+            # What was drawn has died with its worker, and another draws it again.
+        except FutureCancelledError as error:
+            raise _gone() from error
+        except KilledWorker:
+            return [ClusterError("workers die of this picture: have they enough memory?")] * count
+        except Exception as error:
+            return [error] * count
 
 
 def _whole(tiled: _Tiled) -> Drawn | Exception:
