@@ -6,12 +6,12 @@ python benchmarks/batches.py memory [SCENES]       memory of a process over 10,0
 
 import sys
 import time
-from collections.abc import Iterator
 from multiprocessing import get_context
 from multiprocessing.synchronize import Barrier
 from pathlib import Path
+from statistics import median
 
-from converter.batch.cluster import cluster, drawn_by
+from converter.batch.cluster import Cluster, cluster, drawn_by
 from converter.batch.pictures import Job, Picture, draw_picture
 from converter.batch.run import Wanted
 from converter.films.script import Changes, read_script
@@ -20,6 +20,7 @@ from converter.scene.settings import Settings
 
 FILM = Path(__file__).parents[1] / "scenes" / "films" / "carving.in"
 WORKERS = 2
+ROUNDS = 9
 
 
 def main(what: str, count: int | None = None) -> None:
@@ -42,29 +43,35 @@ def efficiency(count: int) -> None:
     """Wall-clock time of frames at 320 x 240, one thread each.
 
     Ideal is what as many processes take that draw their shares and know nothing of one another: two hardware threads
-    may be less than twice one.
+    may be less than twice one. Medians of rounds in turn.
     """
     job, changes = job_of("native", 320, 240)
     pictures = [Picture(changes[k % len(changes)]) for k in range(count)]
-    started = time.perf_counter()
-    for picture in pictures:
-        draw_picture(job, picture)
-    alone = time.perf_counter() - started
-    apart = _apart(job, pictures)
+    alone, apart, together = [], [], []
     begun = time.perf_counter()
     with cluster(WORKERS, None, True) as found:
-        ready = time.perf_counter()
-        for _ in drawn_by(found, _wanted(job, pictures[: 2 * WORKERS]), 2 * WORKERS, _nothing):
-            pass
-        warm = time.perf_counter()
-        for _ in drawn_by(found, _wanted(job, pictures), count, _nothing):
-            pass
-        together = time.perf_counter() - warm
-    print(f"{count} frames, one process: {alone:.2f} s, {1000 * alone / count:.1f} ms a frame")
-    print(f"{WORKERS} processes that share nothing: {apart:.2f} s, {alone / apart:.2f} times as fast")
-    print(
-        f"{WORKERS} workers: {together:.2f} s, {100 * apart / together:.1f} % of that; {ready - begun:.2f} s to start"
-    )
+        start = time.perf_counter() - begun
+        _draw_together(found, job, pictures[: 2 * WORKERS])
+        for _ in range(ROUNDS):
+            begun = time.perf_counter()
+            for picture in pictures:
+                draw_picture(job, picture)
+            alone.append(time.perf_counter() - begun)
+            apart.append(_apart(job, pictures))
+            together.append(_draw_together(found, job, pictures))
+    each, ideal = median(alone), median(apart)
+    share = median(one / other for one, other in zip(apart, together, strict=True))
+    print(f"{count} frames, one process: {each:.2f} s, {1000 * each / count:.1f} ms a frame")
+    print(f"{WORKERS} processes that share nothing: {ideal:.2f} s, {each / ideal:.2f} times as fast")
+    print(f"{WORKERS} workers: {median(together):.2f} s, {100 * share:.1f} % of that; {start:.2f} s to start")
+
+
+def _draw_together(found: Cluster, job: Job, pictures: list[Picture]) -> float:
+    """Seconds that the workers take."""
+    begun = time.perf_counter()
+    for _ in drawn_by(found, (Wanted(k, job, picture) for k, picture in enumerate(pictures)), len(pictures), _nothing):
+        pass
+    return time.perf_counter() - begun
 
 
 def _apart(job: Job, pictures: list[Picture]) -> float:
@@ -87,10 +94,6 @@ def _draw_share(job: Job, pictures: list[Picture], gate: Barrier) -> None:
     gate.wait()
     for picture in pictures:
         draw_picture(job, picture)
-
-
-def _wanted(job: Job, pictures: list[Picture]) -> Iterator[Wanted]:
-    return (Wanted(k, job, picture) for k, picture in enumerate(pictures))
 
 
 def memory(count: int) -> None:

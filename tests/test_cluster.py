@@ -149,6 +149,19 @@ def _wait_in_vain():
     raise TimeoutError("the disk does not answer")
 
 
+def test_tasks_get_shorter_at_the_end():
+    """So that workers are done at about the same time, and a task costs the scheduler little."""
+    left, sizes = 500, []
+    while left:
+        sizes.append(min(dask._task_size(0.01, left, 2), left))
+        left -= sizes[-1]
+    assert sizes[0] == 50  # half a second's
+    assert sizes == sorted(sizes, reverse=True)
+    assert sizes[-2] == 5
+    assert len(sizes) < 25
+    assert [dask._task_size(seconds, 500, 2) for seconds in (0.0, 0.1, 3.0)] == [50000, 5, 1]
+
+
 def test_workers_may_come_later(whitted, tmp_path, monkeypatch):
     """They are waited for, and each that comes has something to do."""
     monkeypatch.setattr(dask, "COUNTING_SECONDS", 0.0)
@@ -199,7 +212,7 @@ def test_workers_with_another_package(whitted, scheduler, tmp_path, monkeypatch,
 def test_a_scheduler_that_goes_loses_no_picture(whitted, tmp_path, monkeypatch):
     """What is drawn is there, and the same command goes on from it."""
     monkeypatch.setattr(dask, "PATIENCE", 0.5)
-    monkeypatch.setattr(dask, "TASK_SECONDS", 0.0)  # a task for each picture, so that not all are drawn in the first
+    monkeypatch.setattr(dask, "_task_size", lambda *_: 1)  # else all may be drawn in the first task
     words = ("animate", SCENES / "films/orbit.in", tmp_path / "{frame}.ppm", 40, 30, "--frames", "40", *NATIVE)
     local = LocalCluster(n_workers=1, processes=False, dashboard_address=":0", silence_logs=50)
     finished = dask._finished

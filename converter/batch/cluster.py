@@ -34,6 +34,8 @@ AHEAD = 3
 """Tasks at a time, for each worker: one is at work, the others wait."""
 TASK_SECONDS = 0.5
 """What a task takes, of pictures that take less."""
+LEAST_SECONDS = 0.05
+"""What one takes at the end: tasks get shorter there, so that no worker waits long for another's last."""
 COUNTING_SECONDS = 2.0
 """Between two looks at how many workers there are."""
 PATIENCE = 20.0
@@ -161,14 +163,13 @@ def drawn_by(found: Cluster, wanted: Iterable[Wanted], count: int, progress: Pro
     sending = _Sending(found, count)
     pieces = _Pieces(piece for each in wanted for piece in sending.pieces_of(each))
     waiting: dict[Any, list[_Piece]] = {}
-    seconds, drawn, done = 0.0, 0, 0.0
+    seconds, drawn, sent, done = 0.0, 0, 0.0, 0.0
     while True:
         sending.count_workers()
         while len(waiting) < sending.room:
-            left = count - done
-            size = min(TASK_SECONDS * drawn / max(seconds, 1e-6), left / (2 * sending.workers)) if drawn else 1
-            if not (group := pieces.take(max(1, int(size)))):
+            if not (group := pieces.take(_task_size(seconds / drawn if drawn else 1.0, count - sent, sending.workers))):
                 break
+            sent += sum(1 / len(piece.tiled.tiles) for piece in group)
             waiting[sending.submit(group)] = group
         if not waiting:
             return
@@ -184,6 +185,16 @@ def drawn_by(found: Cluster, wanted: Iterable[Wanted], count: int, progress: Pro
                 tiled.missing -= 1
                 if tiled.missing == 0:
                     yield tiled.wanted.number, _whole(tiled)
+
+
+def _task_size(seconds: float, left: float, workers: int) -> int:
+    """How many pictures of so many seconds each are a task.
+
+    Half of each worker's share of what is left, after Polychronopoulos and Kuck, "Guided self-scheduling", 1987, within
+    limits of time.
+    """
+    a_second = 1 / max(seconds, 1e-6)
+    return int(max(1, LEAST_SECONDS * a_second, min(TASK_SECONDS * a_second, left / (2 * workers))))
 
 
 class _Pieces:
